@@ -27,7 +27,7 @@ struct LiveCommand {
   BridgeOptions options(const BridgeOptions& scene) const;
 };
 
-/// What a live run shows, besides its simulation.
+/// Parts of a live run.
 struct LiveRun {
   Simulation& simulation;
   ViewOptions view = {};

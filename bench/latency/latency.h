@@ -17,7 +17,7 @@ struct Subject {
   double rate;  ///< [Hz]
 };
 
-/// What a client's process tells of a message.
+/// Report of a client's process on a message.
 struct Arrival {
   uint64_t instant = 0;  ///< simulation time of its stamp [ns]
   double at = 0;         ///< when it was there, of the machine's clock [ms]

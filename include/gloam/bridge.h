@@ -1,6 +1,6 @@
 #pragma once
 // Bridges: sinks and sources of a running Simulation's topics and operations for other programs.
-// What nobody subscribes to is not computed. docs/bridges.md lists them.
+// Topics that nobody subscribes to are not computed. docs/bridges.md lists them.
 
 #include <cstdint>
 #include <memory>

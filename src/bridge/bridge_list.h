@@ -9,7 +9,7 @@
 
 namespace gloam::bridge {
 
-/// What every bridge is given; it outlives them.
+/// Things that every bridge is given; they outlive it.
 struct BridgeContext {
   Simulation& simulation;
   Operator& operations;

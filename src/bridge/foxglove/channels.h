@@ -18,7 +18,7 @@
 
 namespace gloam::bridge::foxglove {
 
-/// What changed by a recompile.
+/// Changes by a recompile.
 struct ChannelChange {
   std::vector<ChannelInfo> added;
   std::vector<uint64_t> removed;

@@ -1,4 +1,4 @@
-// What clients ask for.
+// Requests of clients.
 
 #include <utility>
 
@@ -99,7 +99,7 @@ void FoxgloveBridge::obey(const ClientPtr& client, const CallMessage& message) {
 
 void FoxgloveBridge::obey(const ClientPtr& client, const PlaybackMessage& message) {
   if (!playback_) return refuse_request(client, counters_, "no log is played");
-  // Of a slider that is dragged only the last place counts.
+  // A slider that is dragged counts by its last place alone.
   do_later(operating_, client, [this, client, message] { play(client, message); }, kPlaybackKey);
 }
 

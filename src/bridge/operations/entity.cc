@@ -96,7 +96,7 @@ struct GeomBox {
   }
 };
 
-/// What the World says of names.
+/// Names in the World.
 struct KnownNames {
   std::set<std::string> mocap;              // that clients may move
   std::map<std::string, std::string> kind;  // of agents

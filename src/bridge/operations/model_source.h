@@ -25,7 +25,7 @@ class ModelSource {
   ModelSource(const ModelSource&) = delete;
   ModelSource& operator=(const ModelSource&) = delete;
 
-  /// What a request asks for, without a name and with its pose in the world. `model_name`: the name
+  /// Entity that a request asks for, without a name and with its pose in the world. `model_name`: the name
   /// that a model gives itself; `failure`: the cause of an Error.
   Result<SceneEntity> find(const SpawnRequest& request, const Scene& scene, const Pose& X_WE,
                            std::string* model_name, SpawnFailure* failure);

@@ -161,7 +161,8 @@ Status Operator::reset(const ResetScope& scope) {
     const std::lock_guard lock(p.names_mutex);
     p.spawned.clear();
   }
-  // What came back begins as the scene says, and what was moved stays where the reset has put it.
+  // Entities that came back begin as the scene says, and one that was moved stays where the reset
+  // has put it.
   if (scope.state) return simulation_.post({.what = ResetSim{}});
   return {};
 }

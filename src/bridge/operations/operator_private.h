@@ -12,7 +12,7 @@
 namespace gloam::bridge {
 
 struct Operator::Private {
-  /// What a client has said of an entity.
+  /// Information of a client about an entity.
   struct Info {
     std::string description;
     std::vector<std::string> tags;

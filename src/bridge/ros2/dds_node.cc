@@ -1,29 +1,22 @@
 #include "bridge/ros2/dds_node.h"
 
-#include <fastdds/rtps/common/WriteParams.h>
 #include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
 #include <fastrtps/utils/IPLocator.h>
 #include <fastdds/dds/domain/DomainParticipant.hpp>
 #include <fastdds/dds/domain/DomainParticipantFactory.hpp>
 #include <fastdds/dds/log/Log.hpp>
 #include <fastdds/dds/log/StdoutErrConsumer.hpp>
-#include <fastdds/dds/publisher/DataWriter.hpp>
-#include <fastdds/dds/publisher/DataWriterListener.hpp>
 #include <fastdds/dds/publisher/Publisher.hpp>
-#include <fastdds/dds/subscriber/DataReader.hpp>
-#include <fastdds/dds/subscriber/DataReaderListener.hpp>
-#include <fastdds/dds/subscriber/SampleInfo.hpp>
 #include <fastdds/dds/subscriber/Subscriber.hpp>
 #include <fastdds/dds/topic/Topic.hpp>
 #include <fastdds/dds/topic/TypeSupport.hpp>
 #include <fastdds/rtps/flowcontrol/FlowControllerDescriptor.hpp>
 
 #include <algorithm>
-#include <atomic>
-#include <condition_variable>
 #include <map>
 #include <set>
 
+#include "bridge/ros2/dds_endpoints.h"
 #include "bridge/ros2/loopback_transport.h"
 #include "bridge/ros2/raw_type.h"
 #include "ros/codec.h"
@@ -36,11 +29,9 @@ namespace dds = eprosima::fastdds::dds;
 namespace rtps = eprosima::fastrtps::rtps;
 using eprosima::fastrtps::types::ReturnCode_t;
 
-constexpr const char* kPaceName = "gloam_large";
 constexpr int32_t kBytesPerPeriod = 132'000;  // two of DDS's fragments, which are of 65,500 bytes
 constexpr uint64_t kPeriod = 2;               // [ms]
 constexpr int kLocalParticipants = 32;        // of one domain that are looked for on loopback
-constexpr auto kReplyPatience = std::chrono::milliseconds(500);
 
 // Ports of RTPS 2.5, 9.6.2.3.
 uint32_t discovery_port(int domain) { return static_cast<uint32_t>(7400 + 250 * domain); }
@@ -72,7 +63,7 @@ dds::DomainParticipantQos participant_qos(const DdsNodeOptions& options) {
   // A picture sent at once would overflow its reader's socket, which holds 212,992 bytes by
   // default.
   const auto pace = std::make_shared<eprosima::fastdds::rtps::FlowControllerDescriptor>();
-  pace->name = kPaceName;
+  pace->name = kLargePace;
   pace->scheduler = eprosima::fastdds::rtps::FlowControllerSchedulerPolicy::FIFO;
   pace->max_bytes_per_period = kBytesPerPeriod;
   pace->period_ms = kPeriod;
@@ -97,34 +88,11 @@ void log_to_stderr() {
   });
 }
 
-template <class Qos>
-void set_qos(const DdsEndpoint& endpoint, Qos* qos) {
-  qos->reliability().kind =
-      endpoint.qos.is_reliable ? dds::RELIABLE_RELIABILITY_QOS : dds::BEST_EFFORT_RELIABILITY_QOS;
-  qos->durability().kind =
-      endpoint.qos.is_latched ? dds::TRANSIENT_LOCAL_DURABILITY_QOS : dds::VOLATILE_DURABILITY_QOS;
-  qos->history().kind = dds::KEEP_LAST_HISTORY_QOS;
-  qos->history().depth = std::max(endpoint.qos.depth, 1);
-  qos->endpoint().history_memory_policy = rtps::DYNAMIC_REUSABLE_MEMORY_MODE;
-  qos->data_sharing().off();
-  if (endpoint.type_hash.empty()) return;
-  const std::string hash = "typehash=" + endpoint.type_hash + ";";
-  qos->user_data().setValue({hash.begin(), hash.end()});
-}
-
 rmw_dds_common::Gid gid_of(const rtps::GUID_t& guid) {
   rmw_dds_common::Gid gid;
   std::copy_n(guid.guidPrefix.value, 12, gid.data.begin());
   std::copy_n(guid.entityId.value, 4, gid.data.begin() + 12);
   return gid;
-}
-
-// Whom a reply to a request is for: rmw_fastrtps gives the GUID of its client's reader beside it.
-DdsRequest requester(const dds::SampleInfo& info) {
-  DdsRequest request = info.sample_identity;
-  const rtps::GUID_t& reader = info.related_sample_identity.writer_guid();
-  if (reader != rtps::GUID_t::unknown()) request.writer_guid(reader);
-  return request;
 }
 
 }  // namespace
@@ -173,14 +141,18 @@ class DdsNode::Impl {
     return topic;
   }
 
-  void add(const rtps::GUID_t& guid, bool is_writer) {
-    const std::lock_guard lock(mutex_);
-    (is_writer ? writers_ : readers_).insert(guid);
+  EndpointEvent on_begin(bool is_writer) {
+    return [this, &list = is_writer ? writers_ : readers_](const rtps::GUID_t& guid) {
+      const std::lock_guard lock(mutex_);
+      list.insert(guid);
+    };
   }
-  void remove(const rtps::GUID_t& guid) {
-    const std::lock_guard lock(mutex_);
-    writers_.erase(guid);
-    readers_.erase(guid);
+  EndpointEvent on_end() {
+    return [this](const rtps::GUID_t& guid) {
+      const std::lock_guard lock(mutex_);
+      writers_.erase(guid);
+      readers_.erase(guid);
+    };
   }
   std::vector<uint8_t> entities() {
     const std::lock_guard lock(mutex_);
@@ -212,130 +184,6 @@ class DdsNode::Impl {
   std::set<rtps::GUID_t> writers_, readers_;
 };
 
-namespace {
-
-class RawWriter final : public DdsWriter, private dds::DataWriterListener {
- public:
-  explicit RawWriter(std::function<void()> on_match) : on_match_(std::move(on_match)) {}
-  ~RawWriter() override {
-    if (writer_ == nullptr) return;
-    forget_();
-    writer_->set_listener(nullptr);
-    publisher_->delete_datawriter(writer_);
-  }
-
-  Status open(dds::Publisher& publisher, dds::Topic& topic, const DdsEndpoint& endpoint) {
-    dds::DataWriterQos qos = dds::DATAWRITER_QOS_DEFAULT;
-    set_qos(endpoint, &qos);
-    qos.publish_mode().kind = dds::SYNCHRONOUS_PUBLISH_MODE;
-    if (endpoint.is_large) {
-      qos.publish_mode().kind = dds::ASYNCHRONOUS_PUBLISH_MODE;
-      qos.publish_mode().flow_controller_name = kPaceName;
-    }
-    publisher_ = &publisher;
-    writer_ = publisher.create_datawriter(&topic, qos, this);
-    if (writer_ == nullptr)
-      return Error{ErrorKind::kIo, "DDS refuses a writer of " + endpoint.topic};
-    return {};
-  }
-  rtps::GUID_t guid() const { return writer_->guid(); }
-  void on_end(std::function<void()> forget) { forget_ = std::move(forget); }
-
-  int readers() const override { return readers_; }
-  bool write(std::span<const uint8_t> data) override {
-    RawMessage message{data, {}};
-    return writer_->write(&message);
-  }
-  bool reply(std::span<const uint8_t> data, const DdsRequest& request) override {
-    {
-      std::unique_lock lock(mutex_);
-      came_.wait_for(lock, kReplyPatience,
-                     [&] { return matched_.contains(request.writer_guid()); });
-    }
-    RawMessage message{data, {}};
-    rtps::WriteParams parameters;
-    parameters.related_sample_identity(request);
-    return writer_->write(&message, parameters);
-  }
-
- private:
-  void on_publication_matched(dds::DataWriter*,
-                              const dds::PublicationMatchedStatus& status) override {
-    {
-      const std::lock_guard lock(mutex_);
-      rtps::GUID_t reader;
-      rtps::iHandle2GUID(reader, status.last_subscription_handle);
-      if (status.current_count_change > 0)
-        matched_.insert(reader);
-      else
-        matched_.erase(reader);
-      readers_ = status.current_count;
-    }
-    came_.notify_all();
-    if (on_match_) on_match_();
-  }
-
-  const std::function<void()> on_match_;
-  std::function<void()> forget_;
-  dds::Publisher* publisher_ = nullptr;
-  dds::DataWriter* writer_ = nullptr;
-  std::atomic<int> readers_{0};
-  std::mutex mutex_;
-  std::condition_variable came_;
-  std::set<rtps::GUID_t> matched_;
-};
-
-class RawReader final : public DdsReader, private dds::DataReaderListener {
- public:
-  explicit RawReader(std::function<void(const DdsSample&)> on_sample)
-      : on_sample_(std::move(on_sample)) {}
-  ~RawReader() override {
-    if (reader_ == nullptr) return;
-    forget_();
-    reader_->set_listener(nullptr);
-    subscriber_->delete_datareader(reader_);
-  }
-
-  Status open(dds::Subscriber& subscriber, dds::Topic& topic, const DdsEndpoint& endpoint) {
-    dds::DataReaderQos qos = dds::DATAREADER_QOS_DEFAULT;
-    set_qos(endpoint, &qos);
-    subscriber_ = &subscriber;
-    reader_ = subscriber.create_datareader(&topic, qos, this);
-    if (reader_ == nullptr)
-      return Error{ErrorKind::kIo, "DDS refuses a reader of " + endpoint.topic};
-    return {};
-  }
-  rtps::GUID_t guid() const { return reader_->guid(); }
-  void on_end(std::function<void()> forget) { forget_ = std::move(forget); }
-  int writers() const override { return writers_; }
-
- private:
-  void on_data_available(dds::DataReader* reader) override {
-    RawMessage message;
-    dds::SampleInfo info;
-    while (reader->take_next_sample(&message, &info) == ReturnCode_t::RETCODE_OK) {
-      if (!info.valid_data) continue;
-      const rtps::GUID_t& guid = info.sample_identity.writer_guid();
-      DdsSample sample{message.own, {}, requester(info)};
-      sample.writer.assign(reinterpret_cast<const char*>(guid.guidPrefix.value), 12);
-      sample.writer.append(reinterpret_cast<const char*>(guid.entityId.value), 4);
-      on_sample_(sample);
-    }
-  }
-  void on_subscription_matched(dds::DataReader*,
-                               const dds::SubscriptionMatchedStatus& status) override {
-    writers_ = status.current_count;
-  }
-
-  const std::function<void(const DdsSample&)> on_sample_;
-  std::function<void()> forget_;
-  dds::Subscriber* subscriber_ = nullptr;
-  dds::DataReader* reader_ = nullptr;
-  std::atomic<int> writers_{0};
-};
-
-}  // namespace
-
 Result<std::unique_ptr<DdsNode>> DdsNode::create(const DdsNodeOptions& options) {
   auto impl = std::make_shared<Impl>(options);
   GLOAM_TRY_STATUS(impl->open());
@@ -352,23 +200,15 @@ DdsNode::~DdsNode() = default;
 Result<std::unique_ptr<DdsWriter>> DdsNode::add_writer(const DdsEndpoint& endpoint,
                                                        std::function<void()> on_match) {
   GLOAM_TRY(dds::Topic * topic, impl_->topic(endpoint));
-  auto writer = std::make_unique<RawWriter>(std::move(on_match));
-  GLOAM_TRY_STATUS(writer->open(impl_->publisher(), *topic, endpoint));
-  const rtps::GUID_t guid = writer->guid();
-  impl_->add(guid, true);
-  writer->on_end([impl = impl_.get(), guid] { impl->remove(guid); });
-  return std::unique_ptr<DdsWriter>(std::move(writer));
+  return open_writer(impl_->publisher(), *topic, endpoint,
+                     {impl_->on_begin(true), impl_->on_end(), std::move(on_match)});
 }
 
 Result<std::unique_ptr<DdsReader>> DdsNode::add_reader(
     const DdsEndpoint& endpoint, std::function<void(const DdsSample&)> on_sample) {
   GLOAM_TRY(dds::Topic * topic, impl_->topic(endpoint));
-  auto reader = std::make_unique<RawReader>(std::move(on_sample));
-  GLOAM_TRY_STATUS(reader->open(impl_->subscriber(), *topic, endpoint));
-  const rtps::GUID_t guid = reader->guid();
-  impl_->add(guid, false);
-  reader->on_end([impl = impl_.get(), guid] { impl->remove(guid); });
-  return std::unique_ptr<DdsReader>(std::move(reader));
+  return open_reader(impl_->subscriber(), *topic, endpoint,
+                     {impl_->on_begin(false), impl_->on_end(), std::move(on_sample)});
 }
 
 void DdsNode::announce() { static_cast<void>(impl_->discovery_->write(impl_->entities())); }

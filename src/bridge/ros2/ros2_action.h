@@ -21,7 +21,7 @@ struct Ros2Action {
   std::string type;                   ///< "simulation_interfaces/action/SimulateSteps"
   std::vector<Ros2Service> services;  ///< send_goal, cancel_goal, get_result
   std::vector<TopicInfo> topics;      ///< feedback, status: said through Ros2Publish
-  /// What runs goals; it ends with the last owner, before Ros2Publish does.
+  /// Runner of goals; it ends with the last owner, before Ros2Publish does.
   std::shared_ptr<void> server;
 };
 

@@ -15,7 +15,7 @@ std::string dds_reply(std::string_view service);
 /// "std_msgs/msg/String" -> "std_msgs::msg::dds_::String_"; of services and actions the same with a
 /// suffix: ("std_srvs/srv/Empty", "_Request") -> "std_srvs::srv::dds_::Empty_Request_".
 std::string dds_type(std::string_view type, std::string_view suffix = "");
-/// What ROS allows in names: letters, digits, '_' and, between parts, '/'. "sim 1" -> "sim_1".
+/// A text as a name of ROS: letters, digits, '_' and, between parts, '/'. "sim 1" -> "sim_1".
 std::string ros_name(std::string_view text);
 
 }  // namespace gloam::bridge

@@ -13,7 +13,7 @@ namespace {
 using action_msgs::GoalStatus;
 using CancelRequest = action_msgs::srv::CancelGoal_Request;
 using CancelResponse = action_msgs::srv::CancelGoal_Response;
-// These have the same bytes for every action.
+// Messages that have the same bytes for every action.
 using AnySendGoalResponse = simulation_interfaces::action::SimulateSteps_SendGoal_Response;
 using AnyGetResultRequest = simulation_interfaces::action::SimulateSteps_GetResult_Request;
 

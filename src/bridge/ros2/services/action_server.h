@@ -17,7 +17,7 @@ namespace gloam::bridge {
 
 using GoalId = std::array<uint8_t, 16>;
 
-/// What a running goal may ask and say.
+/// A running goal, as its work sees it.
 class GoalContext {
  public:
   virtual ~GoalContext() = default;
@@ -40,7 +40,7 @@ struct GoalRequest {
   std::function<GoalEnd(GoalContext&)> run = {};  ///< empty = it is refused
 };
 
-/// What becomes of a goal that comes while another runs.
+/// Rule for a goal that comes while another runs.
 enum class GoalPolicy : uint8_t {
   kRefuse,
   kReplace,  ///< the old one is cancelled

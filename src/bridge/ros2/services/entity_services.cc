@@ -96,7 +96,7 @@ si::Result set_state(Operator& op, const srv::SetEntityState_Request& request) {
     if (change.angular_velocity)
       change.angular_velocity = rotate(at->X_WE.q, *change.angular_velocity);
   }
-  // What is fixed keeps a twist of zero.
+  // Fixed entities keep a twist of zero.
   const bool has_twist = entity->joint >= 0;
   if (!has_twist && request.set_twist && is_zero(request.state.twist)) {
     change.velocity.reset();

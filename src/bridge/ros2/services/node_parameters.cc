@@ -108,7 +108,7 @@ Status NodeParameters::set_own(const ri::Parameter& parameter) {
   return op_.set_live_field(live_field_of(parameter.name), 0, {numbers.begin(), numbers.end()});
 }
 
-// What is checked without a change comes first; options all at once; then the rest.
+// Checks without a change come first; options all at once; then the rest.
 Outcome NodeParameters::set_all(const std::vector<ri::Parameter>& parameters) {
   std::vector<std::pair<std::string, std::string>> options;
   for (const ri::Parameter& parameter : parameters) {

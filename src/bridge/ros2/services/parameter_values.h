@@ -19,7 +19,7 @@ bool numbers_of(const rcl_interfaces::ParameterValue& value, std::vector<double>
 /// The value of an option: bools, integers, doubles, strings and arrays of those as they are;
 /// what ROS has no type for as the text; an option that is not given is not set.
 rcl_interfaces::ParameterValue parameter_from_toml(std::string_view toml);
-/// What set_option takes; empty for bytes and what is not set.
+/// Text for set_option; empty for bytes and what is not set.
 std::string parameter_to_toml(const rcl_interfaces::ParameterValue& value);
 
 }  // namespace gloam::bridge

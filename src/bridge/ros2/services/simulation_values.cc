@@ -27,7 +27,7 @@ constexpr CategoryRow kCategories[] = {
     {EntityKind::kDynamic, si::EntityCategory::CATEGORY_DYNAMIC_OBJECT},
     {EntityKind::kStatic, si::EntityCategory::CATEGORY_STATIC_OBJECT}};
 
-/// What bounds of a filter hold, for boxes along the world's axes.
+/// Test of a filter's bounds, for boxes along the world's axes.
 class BoundsTest {
  public:
   static Result<BoundsTest> make(const si::Bounds& bounds) {

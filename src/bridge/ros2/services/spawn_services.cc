@@ -75,7 +75,7 @@ srv::SpawnEntities_Response spawn_all(Operator& op, const srv::SpawnEntities_Req
   return response;
 }
 
-// What sources cannot be listed is told, and hinders nothing.
+// Sources that cannot be listed are told of, and hinder nothing.
 std::vector<Spawnable> list_spawnables(const Operator& op, const std::vector<std::string>& sources,
                                        si::Result* result) {
   std::vector<Spawnable> all;

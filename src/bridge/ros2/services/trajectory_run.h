@@ -28,7 +28,7 @@ class TrajectoryRun {
   GoalEnd run(GoalContext& context);
 
  private:
-  /// What may be off by how much; 0 = any.
+  /// Largest errors; 0 = any.
   struct Tolerance {
     double position = 0, velocity = 0;
   };
