@@ -14,6 +14,7 @@
 #include "bridge/ros2/service_server.h"
 #include "bridge/ros2/topic_inlets.h"
 #include "bridge/ros2/topic_outlets.h"
+#include "bridge/topic_filter.h"
 
 namespace gloam::bridge {
 namespace {
@@ -29,14 +30,6 @@ Result<int> domain_of(const Ros2Options& options) {
   const long domain = std::strtol(given, &end, 10);
   if (*end == '\0' && domain >= 0 && domain <= kLargestDomain) return static_cast<int>(domain);
   return Error{ErrorKind::kUsage, std::string("ROS_DOMAIN_ID '") + given + "' is not 0 … 232"};
-}
-
-bool is_name_like(std::string_view name, std::string_view pattern) {
-  if (pattern.empty()) return name.empty();
-  if (pattern[0] == '*')
-    return is_name_like(name, pattern.substr(1)) ||
-           (!name.empty() && is_name_like(name.substr(1), pattern));
-  return !name.empty() && name[0] == pattern[0] && is_name_like(name.substr(1), pattern.substr(1));
 }
 
 class Ros2Bridge final : public Bridge {
@@ -92,20 +85,13 @@ class Ros2Bridge final : public Bridge {
   Status status() const override { return {}; }
 
  private:
-  bool is_offered(const TopicInfo& topic) const {
-    if (options_.topics.empty()) return true;
-    for (const std::string& pattern : options_.topics)
-      if (is_name_like(topic.name, pattern)) return true;
-    return false;
-  }
-
   // The topics of the World that runs; after a recompile some are others.
   Status take_topics() {
     world_ = simulation_.world().compiled();
     GLOAM_TRY(const auto topics, simulation_.topics());
     std::vector<TopicInfo> said, heard;
     for (const TopicInfo& topic : topics)
-      if (is_offered(topic)) (topic.is_input ? heard : said).push_back(topic);
+      if (is_offered(options_.topics, topic.name)) (topic.is_input ? heard : said).push_back(topic);
     GLOAM_TRY_STATUS(outlets_->set_topics(said));
     GLOAM_TRY_STATUS(inlets_->set_topics(heard));
     GLOAM_TRY_STATUS(offers_->follow_robots());
