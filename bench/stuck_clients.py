@@ -1,6 +1,6 @@
 """What 64 clients that never read cost the thread that steps, and how much memory they take.
 
-    python3 bench/stuck_clients.py [--seconds N] [--pairs N] [--speed N]
+    python3 bench/stuck_clients.py [--seconds N] [--pairs N] [--speed N] [--half-open]
 
 One live run with ZeroMQ and Foxglove, in real time times N; phases without clients and with them in turn: 16 connections to each
 server that stop in the middle of the handshake, 16 subscribers of each that read nothing of states, joints and transforms. CPU time
@@ -46,14 +46,14 @@ def memory(pid):
 class Stuck:
     """64 clients; closed by leaving."""
 
-    def __init__(self, zmq_port, foxglove_port):
+    def __init__(self, zmq_port, foxglove_port, subscribes):
         self.context, self.open = zmq.Context(), []
         for port, words in ((zmq_port, b"\xff\x00\x00"), (foxglove_port, b"GET / HTTP/1.1\r\nHost: 127.0")):
             for _ in range(EACH):
                 half = socket.create_connection(("127.0.0.1", port))
                 half.sendall(words)
                 self.open.append(half)
-        for _ in range(EACH):
+        for _ in range(EACH if subscribes else 0):
             subscriber = self.context.socket(zmq.SUB)
             subscriber.setsockopt(zmq.LINGER, 0)
             subscriber.setsockopt(zmq.RCVHWM, 10)
@@ -62,7 +62,7 @@ class Stuck:
                 subscriber.setsockopt(zmq.SUBSCRIBE, topic)
             subscriber.connect(f"tcp://127.0.0.1:{zmq_port + 1}")
             self.open.append(subscriber)
-        for _ in range(EACH):
+        for _ in range(EACH if subscribes else 0):
             watcher = FoxgloveClient(f"ws://127.0.0.1:{foxglove_port}/?token={TOKEN}")
             for topic in ("/tf", "/ada/joint_states"):
                 watcher.subscribe(topic)
@@ -96,6 +96,7 @@ def main():
     parser.add_argument("--seconds", type=float, default=5)
     parser.add_argument("--pairs", type=int, default=4)
     parser.add_argument("--speed", type=float, default=1)
+    parser.add_argument("--half-open", action="store_true", help="only the 32 connections that stop in the handshake")
     arguments = parser.parse_args()
     zmq_port, foxglove_port = free_port(), free_port()
     command = [PROGRAM, "run", ROOT / "examples" / "two_robots.toml", "--zmq", "--foxglove", "--speed", arguments.speed,
@@ -111,7 +112,7 @@ def main():
             start, ratios, largest = memory(process.pid), [], 0
             for _ in range(arguments.pairs):
                 alone = phase(sim, process.pid, thread, arguments.seconds)
-                with Stuck(zmq_port, foxglove_port):
+                with Stuck(zmq_port, foxglove_port, not arguments.half_open):
                     time.sleep(1)
                     beside = phase(sim, process.pid, thread, arguments.seconds)
                     largest = max(largest, memory(process.pid))
@@ -120,7 +121,7 @@ def main():
     finally:
         process.send_signal(signal.SIGINT)
         process.wait(timeout=60)
-    print(json.dumps({"clients": 4 * EACH, "cost": statistics.median(ratios) - 1, "pairs": [round(r, 4) for r in ratios], "step_us": round(alone, 2),
+    print(json.dumps({"clients": (2 if arguments.half_open else 4) * EACH, "cost": statistics.median(ratios) - 1, "pairs": [round(r, 4) for r in ratios], "step_us": round(alone, 2),
                       "memory_mb": [round(start), round(largest)]}))
 
 
