@@ -25,8 +25,8 @@ class ModelSource {
   ModelSource(const ModelSource&) = delete;
   ModelSource& operator=(const ModelSource&) = delete;
 
-  /// Entity that a request asks for, without a name and with its pose in the world. `model_name`: the name
-  /// that a model gives itself; `failure`: the cause of an Error.
+  /// Entity that a request asks for, without a name and with its pose in the world. `model_name`:
+  /// the name that a model gives itself; `failure`: the cause of an Error.
   Result<SceneEntity> find(const SpawnRequest& request, const Scene& scene, const Pose& X_WE,
                            std::string* model_name, SpawnFailure* failure);
   /// An absolute path for a path or an address of a client. Errors: not there, not to be read.
