@@ -141,7 +141,7 @@ LatchedEncoder scene_update(const TopicSource& world) {
   return [world](const TopicInfo& topic, const LatchedInputs& at, MessageBytes* out) -> Status {
     const mjModel& m = *world->model;
     foxglove_msgs::SceneUpdate message;
-    // What stood in another World before is gone.
+    // Shapes of an earlier World are taken away first.
     message.deletions.push_back({ros_time(at.time), foxglove_msgs::SceneEntityDeletion::ALL, ""});
     size_t points = 0;
     EntityMaker maker(m, &points);

@@ -22,7 +22,7 @@
 #include "bridge/foxglove/publishing.h"
 #include "bridge/foxglove/server.h"
 #include "bridge/foxglove/services.h"
-#include "bridge/foxglove/worker.h"
+#include "bridge/worker.h"
 
 namespace gloam::bridge::foxglove {
 
@@ -93,7 +93,8 @@ class FoxgloveBridge final : public Bridge, private ServerEvents {
   Parameters parameters_;
   Assets assets_;
   std::optional<Playback> playback_;
-  Worker subscribing_, operating_;
+  static constexpr size_t kMostJobs = 1024;  // that wait
+  Worker subscribing_{kMostJobs}, operating_{kMostJobs};
   Server server_;
 };
 

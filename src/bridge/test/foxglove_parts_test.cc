@@ -12,8 +12,8 @@
 #include "bridge/foxglove/outbox.h"
 #include "bridge/foxglove/publishing.h"
 #include "bridge/foxglove/server_messages.h"
-#include "bridge/foxglove/worker.h"
 #include "bridge/topic_filter.h"
+#include "bridge/worker.h"
 #include "ros/codec.h"
 #include "ros/messages/sensor_msgs.h"
 
@@ -66,7 +66,7 @@ TEST(FoxgloveOutbox, OverflowsByWhatMustArrive) {
 }
 
 TEST(FoxgloveWorker, KeyedJobsInARowAreOne) {
-  Worker worker;
+  Worker worker(1024);
   std::atomic<bool> go = false;
   std::string done;
   worker.post([&] {

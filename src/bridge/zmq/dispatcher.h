@@ -6,11 +6,13 @@
 #include <memory>
 #include <span>
 
+#include "bridge/worker.h"
 #include "bridge/zmq/operations/operation.h"
 #include "bridge/zmq/request.h"
-#include "bridge/zmq/worker.h"
 
 namespace gloam::bridge::zeromq {
+
+constexpr size_t kMostJobs = 64;  // slow operations that wait
 
 class Dispatcher {
  public:
@@ -33,7 +35,7 @@ class Dispatcher {
   Services services_;
   Outbox& outbox_;
   std::atomic<int64_t> obeyed_{0}, refused_{0};
-  Worker worker_;  // last: it uses the others
+  Worker worker_{kMostJobs};  // last: it uses the others
 };
 
 }  // namespace gloam::bridge::zeromq

@@ -83,7 +83,7 @@ si::Result set_state(Operator& operations, uint8_t target) {
                      : result_of(Response::STATE_TRANSITION_ERROR, status.error().to_string());
 }
 
-si::Result step(Operator& operations, uint64_t steps, const ServiceWorker& worker) {
+si::Result step(Operator& operations, uint64_t steps, const Worker& worker) {
   if (steps > static_cast<uint64_t>(std::numeric_limits<int64_t>::max() / 2))
     return result_of(ResultCode::RESULT_OPERATION_FAILED, "too many steps");
   const Status status = operations.step(static_cast<int64_t>(steps),
@@ -127,7 +127,7 @@ void add_run_services(ServiceTable* table) {
       ns + "/set_simulation_state", [op](const srv::SetSimulationState_Request& request) {
         return srv::SetSimulationState_Response{set_state(*op, request.state.state)};
       }));
-  const ServiceWorker* const worker = table->worker.get();  // it outlives its jobs
+  const Worker* const worker = table->worker.get();  // it outlives its jobs
   add(make_slow_service<srv::StepSimulation_Request, srv::StepSimulation_Response>(
       ns + "/step_simulation", table->worker, {busy},
       [op, worker](const srv::StepSimulation_Request& request) {
@@ -142,7 +142,7 @@ void add_run_services(ServiceTable* table) {
 
 std::vector<Ros2Service> simulation_services(Operator& operations, int interfaces,
                                              const std::string& ns) {
-  ServiceTable table{operations, interfaces, ns, std::make_shared<ServiceWorker>()};
+  ServiceTable table{operations, interfaces, ns, std::make_shared<Worker>(kMostSlowServices)};
   add_run_services(&table);
   add_entity_services(&table);
   add_spawn_services(&table);

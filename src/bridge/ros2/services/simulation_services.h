@@ -7,7 +7,7 @@
 
 #include "bridge/operations/operator.h"
 #include "bridge/ros2/ros2_service.h"
-#include "bridge/ros2/services/service_worker.h"
+#include "bridge/worker.h"
 
 namespace gloam::bridge {
 
@@ -21,7 +21,7 @@ struct ServiceTable {
   Operator& operations;
   int interfaces = 2;
   std::string ns;
-  std::shared_ptr<ServiceWorker> worker;
+  std::shared_ptr<Worker> worker;
   std::vector<Ros2Service> list = {};
 };
 void add_run_services(ServiceTable* table);

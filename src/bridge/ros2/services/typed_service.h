@@ -7,11 +7,14 @@
 #include <utility>
 
 #include "bridge/ros2/ros2_service.h"
-#include "bridge/ros2/services/service_worker.h"
+#include "bridge/worker.h"
 #include "ros/codec.h"
 #include "ros/message_types.h"
 
 namespace gloam::bridge {
+
+/// Requests of services that take long that may wait, for each thread of them.
+inline constexpr size_t kMostSlowServices = 64;
 
 /// "simulation_interfaces/srv/StepSimulation" of its request.
 template <Message Request>
@@ -43,8 +46,8 @@ Ros2Service make_service(std::string name, std::function<Response(const Request&
 /// Answered by the worker; `busy` is the response when too many requests wait. A damaged request
 /// has no answer.
 template <Message Request, Message Response>
-Ros2Service make_slow_service(std::string name, std::shared_ptr<ServiceWorker> worker,
-                              Response busy, std::function<Response(const Request&)> answer) {
+Ros2Service make_slow_service(std::string name, std::shared_ptr<Worker> worker, Response busy,
+                              std::function<Response(const Request&)> answer) {
   using Reply = std::function<void(std::vector<uint8_t>)>;
   const auto send = [](const Response& response, const Reply& reply) {
     std::vector<uint8_t> bytes;
@@ -61,7 +64,7 @@ Ros2Service make_slow_service(std::string name, std::shared_ptr<ServiceWorker> w
                 const auto job = [answer, send, reply, request = std::move(*request)] {
                   send(answer(request), reply);
                 };
-                if (!worker->add(job)) send(busy, reply);
+                if (!worker->post(job)) send(busy, reply);
               },
           .hash = service_hash_of<Request, Response>()};
 }

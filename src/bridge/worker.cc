@@ -1,24 +1,20 @@
-#include "bridge/foxglove/worker.h"
+#include "bridge/worker.h"
 
 #include <utility>
 
-namespace gloam::bridge::foxglove {
-namespace {
+namespace gloam::bridge {
 
-constexpr size_t kMostJobs = 1024;
-
-}  // namespace
-
-Worker::Worker() : thread_([this] { run(); }) {}
+Worker::Worker(size_t most) : most_(most), thread_([this] { run(); }) {}
 
 bool Worker::post(Job job, int64_t key) {
   {
     const std::lock_guard lock(mutex_);
+    if (stopping_) return false;
     if (key != 0 && !waiting_.empty() && waiting_.back().key == key) {
       waiting_.back().job = std::move(job);
       return true;
     }
-    if (waiting_.size() >= kMostJobs) return false;
+    if (waiting_.size() >= most_) return false;
     waiting_.push_back({std::move(job), key});
   }
   wake_.notify_one();
@@ -39,9 +35,11 @@ bool Worker::is_idle() {
 }
 
 void Worker::stop() {
+  std::deque<Waiting> thrown_away;  // outside of the lock: what jobs hold may post as it goes
   {
     const std::lock_guard lock(mutex_);
     stopping_ = true;
+    thrown_away.swap(waiting_);
   }
   wake_.notify_one();
   if (thread_.joinable()) thread_.join();
@@ -60,4 +58,4 @@ void Worker::run() {
   }
 }
 
-}  // namespace gloam::bridge::foxglove
+}  // namespace gloam::bridge
