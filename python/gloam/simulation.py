@@ -202,6 +202,8 @@ class Simulation:
 
     def restore(self, checkpoint: Checkpoint) -> None:
         """Goes on from a checkpoint of this or another simulation of the same scene and timestep."""
+        if not isinstance(checkpoint, Checkpoint):
+            raise TypeError(f"a Checkpoint is expected, not {checkpoint!r}")
         self._core.restore(checkpoint._checkpoint)
         self._take_world(World(self._core.world))
 

@@ -108,8 +108,10 @@ void Run::call_hook(const mjModel_* model, mjData_* data) {
   }
   if (!has_hook_.load(std::memory_order_acquire)) return;
   const nb::gil_scoped_acquire acquired;
+  const nb::object hook = hook_;  // kept for as long as it runs
+  if (!hook.is_valid() || hook.is_none()) return;
   try {
-    hook_();
+    hook();
   } catch (nb::python_error& error) {
     const std::lock_guard lock(hook_mutex_);
     if (!hook_error_) hook_error_ = std::make_unique<nb::python_error>(std::move(error));

@@ -47,6 +47,8 @@ class Run {
   nb::object step_until(Inbox& inbox);
 
   void add(const std::shared_ptr<Inbox>& inbox);
+  /// For the collector of cycles.
+  nb::object& hook() { return hook_; }
 
  private:
   void give_written();
