@@ -55,6 +55,8 @@ class Run {
   void look_at_memory();
   void look_at_state();
   void call_hook(const mjModel_* model, mjData_* data);
+  std::vector<std::shared_ptr<Inbox>> open_inboxes() const;
+  void empty_inboxes();
   void restart_inboxes();
   template <class F>
   void guarded_call(F&& job);

@@ -31,7 +31,7 @@ def test_options_by_path(tmp_path: Path) -> None:
 
 
 def test_a_scene_in_code_is_that_of_a_file(tmp_path: Path) -> None:
-    scene = gloam.Scene.parse("[sim]\nduration = 2\n[environment]\ngenerate = 'hallway'\n", tmp_path)
+    scene = gloam.Scene.parse("[sim]\nduration = 2\n[environment.hallway]\n", tmp_path)
     path = scene.add("camera", name="front", position=(2, 0, 1), look_at=[0, 0, 0])
     assert path == "camera.front" and scene["camera.front.position"] == [2.0, 0.0, 1.0]
     scene.add("weather", visibility=100)
