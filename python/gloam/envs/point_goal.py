@@ -68,14 +68,15 @@ class PointGoal(Task):
         self.size, self.beams, self.reach, self.radius, self.max_range = size, beams, reach, radius, max_range
         self.house = {"seed": house_seed, "rooms": rooms}
         self.look = {"tier": tier, "spp": spp}
-        self.settle = self.control_interval if observation == "lidar" else 0.0
+        # The first scan begins where the cart was before it was placed.
+        self.settle = 2 * self.control_interval if observation == "lidar" else 0.0
         self._lock = threading.Lock()
         self._space: FreeSpace | None = None
 
     def scene(self) -> SceneSource:
-        environment: dict[str, Any] = {"file": "environments/arena/arena.xml"}
-        if self.place == "house":
-            environment = {"house": self.house}
+        is_house = self.place == "house"
+        environment = {"house": self.house} if is_house else {"file": "environments/arena/arena.xml"}
+        lamp = {"name": "lamp", "type": "rect", "position": [0, 0, 3], "size": [0.5, 0.5], "flux": 4000}
         tables: dict[str, Any] = {
             "scene": {"name": "point_goal"},
             "sim": {"timestep": 0.005},
@@ -96,6 +97,8 @@ class PointGoal(Task):
             ],
             "render": self.look,
         }
+        if not is_house:
+            tables["light"] = [lamp]
         if self.observation == "lidar":
             tables["lidar"] = [self._lidar()]
         return gloam.Scene.from_dict(tables, folder=asset_folder())

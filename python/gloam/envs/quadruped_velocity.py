@@ -20,7 +20,7 @@ from gloam.envs.task import Outcome, SceneSource, Task, TaskWorld
 from gloam.envs.terms import Term
 
 JOINTS = 12
-ACTION_SCALE = 0.25  # [rad] of an action of 1, about the stance of the keyframe "home"
+ACTION_SCALE = 0.7  # [rad] of an action of 1, about the stance of the keyframe "home"
 FALLEN = math.cos(math.radians(60))  # of the angle between the trunk's z and the vertical
 LOWEST = 0.15  # height of the trunk [m]
 SPREAD = 0.25  # of the kernels of the tracking rewards, (m/s)^2 and (rad/s)^2
@@ -81,7 +81,7 @@ class QuadrupedVelocity(Task):
 
     def action_space(self, world: gloam.World) -> spaces.Box:
         """Targets of the joints, about the stance, in units of ACTION_SCALE."""
-        return spaces.Box(-4.0, 4.0, (JOINTS,), np.float32)
+        return spaces.Box(-1.0, 1.0, (JOINTS,), np.float32)
 
     def terms(self, world: gloam.World) -> Sequence[Term]:
         """In this order, all in the trunk's frame: velocities, gravity's direction, goal, joints, the last action."""
@@ -96,7 +96,7 @@ class QuadrupedVelocity(Task):
             Term("goal", (3,), clip=(-10, 10), scale=(2.0, 2.0, 0.25)),
             Term("joint_position", (JOINTS,), noise=noise(0.01), clip=(-6, 6)),
             Term("joint_velocity", (JOINTS,), noise=noise(1.5), clip=(-100, 100), scale=0.05),
-            Term("action", (JOINTS,), clip=(-4, 4)),
+            Term("action", (JOINTS,), clip=(-1, 1)),
         ]
 
     def bind(self, sim: gloam.Simulation) -> TaskWorld:
@@ -169,7 +169,7 @@ class _QuadrupedWorld(TaskWorld):
             + 0.5 * math.exp(-turned_wrong / SPREAD)
             - 2.0 * float(velocity[2]) ** 2
             - 0.05 * float(np.sum(turning[:2] ** 2))
-            - 0.01 * float(np.sum((self._action - self._before) ** 2))
+            - 0.05 * float(np.sum((self._action - self._before) ** 2))
             - float(np.sum(down[:2] ** 2))
         )
         info = {"velocity_error": math.sqrt(wrong), "yaw_rate_error": math.sqrt(turned_wrong), "fallen": bool(has_fallen)}

@@ -61,17 +61,22 @@ class CameraSource(Source):
 
 
 class LidarSource(Source):
-    """Ranges of the scan that has just ended, (rings, columns), or (columns,) of one ring [m]; no return: far.
+    """Ranges of the scan that ended last, (rings, columns), or (columns,) of one ring [m]; no return: far.
 
-    A scan takes its time: the LiDAR's rate has to be one scan in each control interval.
+    Errors: UsageError if no scan has ended yet: a scan takes its time.
     """
 
     def __init__(self, sim: gloam.Simulation, lidar: str, rings: int, columns: int, far: float) -> None:
         self._lidar = sim.lidars[lidar].open(required=True)
         self._shape, self._far = (rings, columns), far
+        self._last: Any = None
 
     def read(self) -> Array:
-        scan = self._lidar.next()
+        for scan in self._lidar.waiting():
+            self._last = scan
+        scan = self._last
+        if scan is None:
+            raise gloam.UsageError(f"no scan of '{self._lidar.name}' has ended yet", hint="settle for 1 / rate at least")
         ranges = np.full(self._shape, self._far, dtype=np.float32)
         np.minimum.at(ranges, (np.asarray(scan.ring), np.asarray(scan.column)), np.asarray(scan.range))
         return ranges[0] if self._shape[0] == 1 else ranges
