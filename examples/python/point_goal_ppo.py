@@ -123,7 +123,10 @@ def train(env: Any, agent: PPO, steps: int) -> list[tuple[int, float, float]]:
             success, spl = np.mean(ended, axis=0)
             curve.append((done, float(success), float(spl)))
             bar = "#" * round(20 * success)
-            print(f"{done:8d}  {100 * success:5.0f} % {bar:20s} {spl:7.2f} {done / (time.monotonic() - begun):8.0f}", flush=True)
+            print(
+                f"{done:8d}  {100 * success:5.0f} % {bar:20s} {spl:7.2f} {done / (time.monotonic() - begun):8.0f}",
+                flush=True,
+            )
     return curve
 
 

@@ -13,7 +13,11 @@ from gymnasium.vector import AutoresetMode
 
 import gloam
 from gloam.envs.declared_actions import Actuation, parse_actions
-from gloam.envs.declared_terms import ObservationSpec, RewardSpec, TerminationSpec, parse_observation, parse_rewards, parse_terminations
+from gloam.envs.declared_terms import (
+    parse_observation,
+    parse_rewards,
+    parse_terminations,
+)
 from gloam.envs.noise import Array
 from gloam.envs.pipeline import Layout
 from gloam.envs.settings import EnvSettings
@@ -44,6 +48,8 @@ _KEYS = (
 class DeclaredTask(Task):
     """A task made of tables (docs/python_envs.md). Errors: ValueError for a table that makes no sense."""
 
+    places = False
+
     def __init__(
         self,
         scene: SceneSource,
@@ -66,11 +72,14 @@ class DeclaredTask(Task):
         self.actions = parse_actions(actions)
         self.rewards = parse_rewards(reward)
         self.terminations = parse_terminations(termination)
-        takes_time = any(observation.takes_time for observation in self.observations)
+        takes_time = any(observation.kind in ("lidar", "topic") for observation in self.observations)
         self.settle = settle if settle is not None else control_interval if takes_time else 0.0
 
     def scene(self) -> SceneSource:
         return self._scene
+
+    def neutral_action(self, space: spaces.Box) -> Array | None:
+        return None
 
     def action_space(self, world: gloam.World) -> spaces.Box:
         with new_simulation(world) as sim:
@@ -80,13 +89,13 @@ class DeclaredTask(Task):
         return spaces.Box(low.astype(np.float32), high.astype(np.float32), dtype=np.float32)
 
     def terms(self, world: gloam.World) -> Sequence[Term]:
-        """Shapes are those that a simulation of the World has, after one control interval."""
+        """Shapes are those of a simulation of the World when its first observation is made."""
         with new_simulation(world) as sim:
-            bound = self.bind(sim)
-            sim.reset()
-            sim.step(max(1, round(self.settle / sim.timestep)))
+            bound = _DeclaredWorld(sim, self)
+            bound.begin(np.random.default_rng(0), {})
+            sim.step(round(self.settle / sim.timestep))
             raw = bound.observe()
-            bound.judge(np.zeros(0))  # names that there are not are errors here
+            bound.check_names()
             bound.close()
         return [observation.term(raw[observation.name]) for observation in self.observations]
 
@@ -111,7 +120,9 @@ class _DeclaredWorld(TaskWorld):
     def begin(self, rng: np.random.Generator, options: Mapping[str, Any]) -> None:
         if options:
             raise ValueError(f"this environment has no options of reset, given are {sorted(options)}")
-        self._metrics.forget()
+        self._metrics.begin()
+        for source in self._sources.values():
+            source.begin()
         self._before = {}
 
     def apply(self, action: Array) -> None:
@@ -121,7 +132,9 @@ class _DeclaredWorld(TaskWorld):
     def observe(self) -> dict[str, Array]:
         values = {name: source.read() for name, source in self._sources.items()}
         if not self._before:
-            self._before = {number: reward.raw(self.sim, self._metrics) for number, reward in enumerate(self._task.rewards)}
+            self._before = {
+                number: reward.raw(self.sim, self._metrics) for number, reward in enumerate(self._task.rewards)
+            }
         return values
 
     def judge(self, action: Array) -> Outcome:
@@ -133,6 +146,12 @@ class _DeclaredWorld(TaskWorld):
         met = [one for one in self._task.terminations if one.is_met(self.sim, self._metrics)]
         info = {"success": any(one.success for one in met)} if self._task.terminations else {}
         return Outcome(total, bool(met), info)
+
+    def check_names(self) -> None:
+        """Raises NotFoundError for a metric that ends episodes and that the scene has not."""
+        for one in self._task.terminations:
+            if one.metric is not None:
+                self._metrics.value(one.metric)
 
     def close(self) -> None:
         for source in self._sources.values():
@@ -162,8 +181,10 @@ def make_env(
     EnvSettings. docs/python_envs.md has all. Errors: ValueError, InputError of the scene, NotFoundError.
     """
     given = dict(observations=observations, actions=actions, reward=reward, termination=termination)
-    task, made, steps = _parsed(scene, {**given, **dict(control_interval=control_interval, settle=settle, layout=layout)}, settings)
-    return Env(task, made, max_episode_steps or steps, render_mode)
+    task, made, steps = _parsed(
+        scene, {**given, **dict(control_interval=control_interval, settle=settle, layout=layout)}, settings
+    )
+    return Env(task, made, steps if max_episode_steps is None else max_episode_steps, render_mode)
 
 
 def make_vec_env(
@@ -184,11 +205,17 @@ def make_vec_env(
 ) -> VectorEnv:
     """num_envs worlds of what make_env makes."""
     given = dict(observations=observations, actions=actions, reward=reward, termination=termination)
-    task, made, steps = _parsed(scene, {**given, **dict(control_interval=control_interval, settle=settle, layout=layout)}, settings)
-    return VectorEnv(task, num_envs, made, max_episode_steps or steps, autoreset_mode, render_mode)
+    task, made, steps = _parsed(
+        scene, {**given, **dict(control_interval=control_interval, settle=settle, layout=layout)}, settings
+    )
+    return VectorEnv(
+        task, num_envs, made, steps if max_episode_steps is None else max_episode_steps, autoreset_mode, render_mode
+    )
 
 
-def _parsed(scene: SceneSource, given: dict[str, Any], settings: dict[str, Any]) -> tuple[DeclaredTask, EnvSettings, int | None]:
+def _parsed(
+    scene: SceneSource, given: dict[str, Any], settings: dict[str, Any]
+) -> tuple[DeclaredTask, EnvSettings, int | None]:
     if given["observations"] is not None:
         return DeclaredTask(scene, **given), EnvSettings(**settings), None
     if not isinstance(scene, (str, Path)):

@@ -38,7 +38,9 @@ class Actuation(ABC):
             if self.high is not None:
                 high = np.broadcast_to(np.asarray(self.high, dtype=np.float64), high.shape)
         except ValueError as error:
-            raise ValueError(f"limits of the actions of '{self.robot}': {len(low)} numbers each are expected") from error
+            raise ValueError(
+                f"limits of the actions of '{self.robot}': {len(low)} numbers each are expected"
+            ) from error
         if not (np.isfinite(low).all() and np.isfinite(high).all() and (low <= high).all()):
             raise ValueError(f"limits of the actions of '{self.robot}' are not known: give low and high")
         return low, high
@@ -90,7 +92,7 @@ class FunctionActuation(Actuation):
     function: Callable[[gloam.Simulation, Array], None]
 
     def default_limits(self, sim: gloam.Simulation) -> tuple[Array, Array]:
-        size = max(np.size(self.low), np.size(self.high))
+        size = max(np.size(limit) for limit in (self.low, self.high, 0.0) if limit is not None)
         return np.full(size, -np.inf), np.full(size, np.inf)
 
     def apply(self, sim: gloam.Simulation, action: Array) -> None:

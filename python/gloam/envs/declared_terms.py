@@ -48,11 +48,6 @@ class ObservationSpec:
     noise: Noise | None
     stages: Mapping[str, Any]
 
-    @property
-    def takes_time(self) -> bool:
-        """Whether its first value is there only some time after a reset."""
-        return self.kind in ("lidar", "topic")
-
     def open(self, sim: gloam.Simulation, metrics: Metrics) -> Source:
         """The quantity in a simulation. Errors: NotFoundError for a name that is not there."""
         keys = self.keys
@@ -61,7 +56,9 @@ class ObservationSpec:
             size = tuple(keys.get("size", (0, 0)))
             return CameraSource(sim, self.value, keys.get("output", "rgb"), size, float(keys.get("far", 100.0)), look)
         if self.kind == "lidar":
-            return LidarSource(sim, self.value, int(keys.get("rings", 1)), int(keys["columns"]), float(keys.get("far", 100.0)))
+            return LidarSource(
+                sim, self.value, int(keys.get("rings", 1)), int(keys["columns"]), float(keys.get("far", 100.0))
+            )
         if self.kind == "topic":
             return TopicSource(sim, self.value, keys.get("field", ""))
         if self.kind == "sensor":
@@ -95,7 +92,9 @@ def parse_observation(name: str, table: object) -> ObservationSpec:
     kind = kinds[0]
     for key in table:
         if key not in (kind, *_KINDS[kind], *_STAGES):
-            raise ValueError(f"observation '{name}', of a {kind}, has no '{key}', but {', '.join((*_KINDS[kind], *_STAGES))}")
+            raise ValueError(
+                f"observation '{name}', of a {kind}, has no '{key}', but {', '.join((*_KINDS[kind], *_STAGES))}"
+            )
     if kind == "lidar" and "columns" not in table:
         raise ValueError(f"observation '{name}', of a lidar, needs its columns")
     stages = {key: table[key] for key in _STAGES if key in table and key != "noise"}

@@ -91,12 +91,12 @@ class FreeSpace:
 
         At most 8 % more than the shortest way, as such grids are.
         """
-        field = np.full(self.blocked.shape, np.inf)
+        field: Array = np.full(self.blocked.shape, np.inf)
         field[self.index(goal)] = 0.0
         free = ~self.blocked
         while True:
-            padded = np.pad(field, 1, constant_values=np.inf)
-            best = field
+            padded: Array = np.pad(field, 1, constant_values=np.inf)
+            best: Array = field
             for dy in (0, 1, 2):
                 for dx in (0, 1, 2):
                     length = self.cell * np.hypot(dy - 1, dx - 1)
@@ -114,9 +114,12 @@ class FreeSpace:
         x = self.origin[0] + self.cell * np.arange(columns.start, min(columns.stop, field.shape[1]))
         y = self.origin[1] + self.cell * np.arange(rows.start, min(rows.stop, field.shape[0]))
         steps = np.hypot(y[:, None] - float(point[1]), x[None, :] - float(point[0]))
-        return float((field[rows, columns] + steps).min())
+        near: Array = field[rows][:, columns]
+        return float((near + steps).min())
 
-    def sample(self, rng: np.random.Generator, field: Array | None = None, reach: tuple[float, float] = (0, 0)) -> Array:
+    def sample(
+        self, rng: np.random.Generator, field: Array | None = None, reach: tuple[float, float] = (0, 0)
+    ) -> Array:
         """A free point (x, y) [m]; with `field`, one whose way to the field's goal is within `reach` [m].
 
         Errors: UsageError if there is none.

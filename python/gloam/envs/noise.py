@@ -87,4 +87,6 @@ def parse_noise(value: object) -> Noise | None:
             return Uniform(float(low), float(high))
         if keys and keys <= {"std", "relative", "bias_std"}:
             return Gaussian(**{str(key): float(number) for key, number in value.items()})
-    raise ValueError(f'noise is a number, {{"std": …, "relative": …, "bias_std": …}} or {{"uniform": [low, high]}}, not {value!r}')
+    raise ValueError(
+        f'noise is a number, {{"std": …, "relative": …, "bias_std": …}} or {{"uniform": [low, high]}}, not {value!r}'
+    )

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import zlib
 from collections.abc import Mapping, Sequence
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 from gymnasium import spaces
@@ -73,7 +73,7 @@ class TermBuffer:
         if noise is None or self._bias is None:
             return raw
         error = [noise.sample(self._rng[world], value) for world, value in zip(worlds, raw, strict=True)]
-        return raw + np.stack(error) + self._bias[worlds]
+        return np.asarray(raw + np.stack(error) + self._bias[worlds])
 
     def _delayed(self, seen: Array, worlds: Array) -> Array:
         """What was seen `lag` steps ago; at first, the first value of the episode."""
@@ -107,7 +107,7 @@ class Pipeline:
         """The terms, in their order."""
         return [buffer.term for buffer in self._buffers]
 
-    def space(self) -> spaces.Space[Observation]:
+    def space(self) -> spaces.Space[Any]:
         """Space of the observation of one world."""
         boxes = {term.name: term.space() for term in self.terms}
         if self.layout == "dict":

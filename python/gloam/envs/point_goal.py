@@ -172,6 +172,7 @@ class _PointGoalWorld(TaskWorld):
         else:
             x, y = self._space.sample(rng, self._field, self._task.reach)
             yaw = rng.uniform(-math.pi, math.pi)
+        self._source.begin()
         self._cart.place(position=(float(x), float(y), 0.001), yaw=float(yaw))
         self._last = np.array([x, y])
         self._left = self._shortest = self._space.distance(self._field, self._last)

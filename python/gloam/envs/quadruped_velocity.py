@@ -47,7 +47,11 @@ class QuadrupedVelocity(Task):
         kd: float = 0.8,
     ) -> None:
         self.goals = np.array([vx, vy, yaw_rate], dtype=np.float64)
-        if self.goals.shape != (3, 2) or not np.isfinite(self.goals).all() or (self.goals[:, 0] > self.goals[:, 1]).any():
+        if (
+            self.goals.shape != (3, 2)
+            or not np.isfinite(self.goals).all()
+            or (self.goals[:, 0] > self.goals[:, 1]).any()
+        ):
             raise ValueError("vx, vy and yaw_rate are ranges (least, most)")
         if not hold > 0:
             raise ValueError(f"hold is {hold}, a goal stays for some time")
@@ -172,7 +176,11 @@ class _QuadrupedWorld(TaskWorld):
             - 0.05 * float(np.sum((self._action - self._before) ** 2))
             - float(np.sum(down[:2] ** 2))
         )
-        info = {"velocity_error": math.sqrt(wrong), "yaw_rate_error": math.sqrt(turned_wrong), "fallen": bool(has_fallen)}
+        info = {
+            "velocity_error": math.sqrt(wrong),
+            "yaw_rate_error": math.sqrt(turned_wrong),
+            "fallen": bool(has_fallen),
+        }
         if self.sim.time >= self._renew:
             self._draw_goal(self.sim.time)
         return Outcome(reward * self._task.control_interval - (2.0 if has_fallen else 0.0), bool(has_fallen), info)

@@ -25,7 +25,10 @@ SHELL = (0.35, 0.65)  # distance of goals from the shoulder [m]
 
 
 class Reach(Task):
-    """radius: at which the goal is reached [m]. hold: control steps that the tool has to stay there. Errors: ValueError."""
+    """radius: at which the goal is reached [m]. hold: control steps that the tool has to stay there.
+
+    Errors: ValueError.
+    """
 
     control_interval = 0.04
     layout = "vector"
@@ -52,7 +55,7 @@ class Reach(Task):
         return spaces.Box(-1.0, 1.0, (JOINTS,), np.float32)
 
     def terms(self, world: gloam.World) -> Sequence[Term]:
-        """In this order: joints [rad, rad/s], their targets, the tool in the world [m], the way from it to the goal [m]."""
+        """In this order: joints [rad, rad/s], their targets, the tool in the world, the way from it to the goal [m]."""
         return [
             Term("joint_position", (JOINTS,), clip=(-4, 4)),
             Term("joint_velocity", (JOINTS,), clip=(-20, 20), scale=0.1),

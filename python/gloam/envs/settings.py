@@ -49,7 +49,9 @@ class EnvSettings:
             if not isinstance(limits, Sequence) or isinstance(limits, str) or len(limits) != 2:
                 raise ValueError(f"randomize '{name}' has a range (low, high), not {limits!r}")
             low, high = (np.asarray(limit, dtype=np.float64) for limit in limits)
-            if low.shape != high.shape or not (np.isfinite(low).all() and np.isfinite(high).all() and (low <= high).all()):
+            if low.shape != high.shape or not (
+                np.isfinite(low).all() and np.isfinite(high).all() and (low <= high).all()
+            ):
                 raise ValueError(f"randomize '{name}': {limits!r} is no range (low, high)")
         if self.threads is not None and self.threads < 1:
             raise ValueError(f"threads is {self.threads}, at least 1 steps the worlds")

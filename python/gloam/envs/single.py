@@ -59,7 +59,9 @@ class Env(gym.Env[Observation, Array]):
         """State hash of the simulation: equal hashes mean equal runs."""
         return self.sim.hash
 
-    def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Observation, dict[str, Any]]:
+    def reset(
+        self, *, seed: int | None = None, options: dict[str, Any] | None = None
+    ) -> tuple[Observation, dict[str, Any]]:
         """Begins an episode. seed: >= 0, of all random numbers, the simulation's too; None goes on with them.
 
         options: those of the task, see its page. Returns the observation and `info`.
@@ -76,7 +78,7 @@ class Env(gym.Env[Observation, Array]):
         assert self.sim is not None
         if self._step_count is None:
             raise gloam.UsageError("step() before reset()")
-        actions = checked_actions(np.asarray(action)[None], self.action_space, 1)
+        actions = checked_actions(np.asarray(action)[None], self._worlds.action_space, 1)
         result = self._worlds.step(_FIRST, actions)
         self._step_count += 1
         is_late = self._most_steps is not None and self._step_count >= self._most_steps

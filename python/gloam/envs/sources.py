@@ -1,4 +1,4 @@
-"""Where raw values of observations come from: cameras, LiDARs, sensors, joints, topics and metrics of one simulation."""
+"""Where raw values come from: cameras, LiDARs, sensors, joints, topics and metrics of one simulation."""
 
 from __future__ import annotations
 
@@ -14,6 +14,9 @@ from gloam.envs.noise import Array
 
 class Source:
     """A quantity of one simulation."""
+
+    def begin(self) -> None:
+        """Forgets the episode before; to be called after a reset."""
 
     def read(self) -> Array:
         """Its value at the present instant; a new array."""
@@ -36,8 +39,8 @@ class FunctionSource(Source):
 class CameraSource(Source):
     """A channel of a camera's picture of the present instant: what a reset placed is in the first one already.
 
-    output: "rgb" (height, width, 3) uint8, "depth" (height, width) [m], or another channel of a frame. far: depth
-    where nothing is seen [m]. render: "tier", "spp" and the like.
+    output: "rgb" (height, width, 3) uint8, "depth" (height, width) [m], "ids", "semantic", or another channel of a
+    frame. far: depth where nothing is seen [m]. render: "tier", "spp" and the like.
     """
 
     def __init__(
@@ -51,7 +54,8 @@ class CameraSource(Source):
     ) -> None:
         self._camera = sim.cameras[camera]
         self._output, self._far = output, far
-        self._request: dict[str, Any] = {"outputs": (output,), "width": size[0], "height": size[1], **(render or {})}
+        asked = "segmentation" if output in ("ids", "semantic", "part") else output
+        self._request: dict[str, Any] = {"outputs": (asked,), "width": size[0], "height": size[1], **(render or {})}
 
     def read(self) -> Array:
         value = np.array(getattr(self._camera.render(**self._request), self._output))
@@ -71,12 +75,17 @@ class LidarSource(Source):
         self._shape, self._far = (rings, columns), far
         self._last: Any = None
 
+    def begin(self) -> None:
+        self._last = None
+
     def read(self) -> Array:
         for scan in self._lidar.waiting():
             self._last = scan
         scan = self._last
         if scan is None:
-            raise gloam.UsageError(f"no scan of '{self._lidar.name}' has ended yet", hint="settle for 1 / rate at least")
+            raise gloam.UsageError(
+                f"no scan of '{self._lidar.name}' has ended yet", hint="settle for 1 / rate at least"
+            )
         ranges = np.full(self._shape, self._far, dtype=np.float32)
         np.minimum.at(ranges, (np.asarray(scan.ring), np.asarray(scan.column)), np.asarray(scan.range))
         return ranges[0] if self._shape[0] == 1 else ranges
@@ -117,11 +126,16 @@ class TopicSource(Source):
         self._stream = sim.subscribe([topic])
         self._last: Any = None
 
+    def begin(self) -> None:
+        self._last = None
+
     def read(self) -> Array:
         for message in self._stream:
             self._last = message
         if self._last is None:
-            raise gloam.UsageError(f"topic '{self._topic}' has said nothing yet", hint="give it a higher rate, or a longer settle")
+            raise gloam.UsageError(
+                f"topic '{self._topic}' has said nothing yet", hint="give it a higher rate, or a longer settle"
+            )
         value: Any = self._last.decode()
         for part in self._field.split(".") if self._field else []:
             if not isinstance(value, Mapping) or part not in value:
@@ -134,16 +148,17 @@ class TopicSource(Source):
 
 
 class Metrics:
-    """Metrics of one simulation, computed once for each instant. `step` is part of what tells instants apart."""
+    """Metrics of one simulation, as the topic /metrics told them last: 10 a second, or at the rate of a [[topic]]."""
 
     def __init__(self, sim: gloam.Simulation) -> None:
         self._sim = sim
         self._step = -1
         self._values: dict[str, float] = {}
 
-    def forget(self) -> None:
-        """To be called after a reset."""
-        self._step = -1
+    def begin(self) -> None:
+        """Begins an episode: they count from now on."""
+        self._values = self._sim.metrics
+        self._step = self._sim.step_count
 
     def value(self, name: str) -> float:
         """Present value; NaN where it has none now. Errors: NotFoundError for a name that the scene has not."""
@@ -152,8 +167,10 @@ class Metrics:
             self._values = self._sim.metrics
             self._step = step
         if name not in self._values:
-            raise gloam.NotFoundError(f"there is no metric '{name}'", hint=f"one of: {', '.join(sorted(self._values))}")
-        return float(self._values[name])
+            names = [metric["name"] for metric in self._sim.world.metrics()]
+            if name not in names:
+                raise gloam.NotFoundError(f"there is no metric '{name}'", hint=f"one of: {', '.join(names)}")
+        return float(self._values.get(name, math.nan))
 
 
 class MetricSource(Source):

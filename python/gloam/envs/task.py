@@ -64,7 +64,9 @@ class Task(ABC):
     """Simulated time between two actions [s], rounded to physics steps."""
     layout: Layout = "dict"
     settle: float = 0.0
-    """Time that passes in a reset before the first observation [s]; one physics step at least."""
+    """Time that passes in a reset before the first observation [s]."""
+    places: bool = True
+    """Whether a reset places things: then a physics step at least passes, which is when they come to be there."""
 
     @abstractmethod
     def scene(self) -> SceneSource:
@@ -82,7 +84,6 @@ class Task(ABC):
     def bind(self, sim: gloam.Simulation) -> TaskWorld:
         """The task in a new simulation of the scene."""
 
-    def neutral_action(self, space: spaces.Box) -> Array:
-        """What is in force until an episode's first action: the middle of the space, 0 where it has none."""
-        middle = (space.low.astype(np.float64) + space.high.astype(np.float64)) / 2
-        return np.nan_to_num(np.where(np.isfinite(middle), middle, 0.0)).astype(space.dtype)
+    def neutral_action(self, space: spaces.Box) -> Array | None:
+        """What is in force until an episode's first action: the middle of the space. None = what the scene says."""
+        return ((space.low.astype(np.float64) + space.high.astype(np.float64)) / 2).astype(space.dtype)

@@ -103,7 +103,7 @@ class VectorEnv(gym.vector.VectorEnv[Observation, Array, Array]):
         assert self.sims is not None
         if not self._is_begun.all():
             raise gloam.UsageError("step() before reset()")
-        checked = checked_actions(actions, self.single_action_space, self.num_envs)
+        checked = checked_actions(actions, self._worlds.action_space, self.num_envs)
         fresh = self._to_reset()
         going = np.flatnonzero(~fresh)
         rewards = np.zeros(self.num_envs)
@@ -119,10 +119,12 @@ class VectorEnv(gym.vector.VectorEnv[Observation, Array, Array]):
         if self._most_steps is not None:
             truncated = ~terminated & ~fresh & (self._step_counts >= self._most_steps)
         self._is_done = terminated | truncated
-        ended = np.flatnonzero(self._is_done) if self.autoreset_mode is AutoresetMode.SAME_STEP else np.zeros(0, np.int64)
+        ended = (
+            np.flatnonzero(self._is_done) if self.autoreset_mode is AutoresetMode.SAME_STEP else np.zeros(0, np.int64)
+        )
         for world, info in zip(going, final, strict=True):
             if world in ended:
-                info = {"final_obs": self._of(world), "final_info": info}
+                info = {"final_obs": self._of(int(world)), "final_info": info}
             infos = self._add_info(infos, info, int(world))
         if fresh.any():
             infos = self._begin(np.flatnonzero(fresh), [None] * self.num_envs, {}, infos)
@@ -152,7 +154,9 @@ class VectorEnv(gym.vector.VectorEnv[Observation, Array, Array]):
             )
         return np.zeros(self.num_envs, dtype=np.bool_)
 
-    def _begin(self, worlds: Array, seeds: list[int | None], options: dict[str, Any], infos: dict[str, Any]) -> dict[str, Any]:
+    def _begin(
+        self, worlds: Array, seeds: list[int | None], options: dict[str, Any], infos: dict[str, Any]
+    ) -> dict[str, Any]:
         observation, starts = self._worlds.reset(worlds, [seeds[world] for world in worlds], options)
         self._store(worlds, observation)
         self._step_counts[worlds] = 0

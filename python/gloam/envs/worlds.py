@@ -11,7 +11,6 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 import numpy as np
-from gymnasium import spaces
 from gymnasium.utils import seeding
 
 import gloam
@@ -65,8 +64,10 @@ class Worlds:
         timestep = self.slots[0].sim.timestep
         self.steps = max(1, round(task.control_interval / timestep))
         self.control_interval = self.steps * timestep
-        self._settle_steps = max(1, round(task.settle / timestep))
-        self.pipeline = Pipeline(settings.applied_to(task.terms(self.world), self.control_interval), num_worlds, task.layout)
+        self._settle_steps = max(int(task.places), round(task.settle / timestep))
+        self.pipeline = Pipeline(
+            settings.applied_to(task.terms(self.world), self.control_interval), num_worlds, task.layout
+        )
         self._neutral = task.neutral_action(self.action_space)
         threads = min(settings.threads or os.cpu_count() or 1, num_worlds)
         self._pool = ThreadPoolExecutor(threads, "gloam-env") if threads > 1 else None
@@ -84,7 +85,7 @@ class Worlds:
     def reset(
         self, worlds: Array, seeds: Sequence[int | None], options: Mapping[str, Any]
     ) -> tuple[Observation, list[dict[str, Any]]]:
-        """Begins an episode in these worlds. A seed restarts all random numbers of its world, None goes on with them."""
+        """Begins an episode in these worlds. A seed restarts all random numbers of its world; None: they go on."""
         for world, seed in zip(worlds, seeds, strict=True):
             self._seed(int(world), seed)
         self.pipeline.reset(worlds)
@@ -94,7 +95,9 @@ class Worlds:
 
     def step(self, worlds: Array, actions: Array) -> StepResult:
         """Takes one control step in these worlds. actions: (k, …), in the order of `worlds`."""
-        jobs = [partial(self._advance, self.slots[world], action) for world, action in zip(worlds, actions, strict=True)]
+        jobs = [
+            partial(self._advance, self.slots[world], action) for world, action in zip(worlds, actions, strict=True)
+        ]
         results = self._map(jobs)
         observation = self.pipeline.push(_stacked([raw for raw, _ in results]), worlds)
         outcomes = [outcome for _, outcome in results]
@@ -137,7 +140,8 @@ class Worlds:
         slot.sim.reset()
         slot.actions.reset(slot.rng)
         slot.bound.begin(slot.rng, options)
-        slot.bound.apply(self._neutral)
+        if self._neutral is not None:
+            slot.bound.apply(self._neutral)
         slot.sim.step(self._settle_steps)
         slot.last = slot.bound.observe()
         return slot.last
