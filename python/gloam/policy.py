@@ -54,12 +54,13 @@ class Policy:
     """
 
     def __init__(self, path: PathLike, settings: PathLike | None = None) -> None:
-        self.path = Path(path)
+        self.path = Path(path).absolute()
+        self.settings = None if settings is None else Path(settings).absolute()
         self._network = Network(self.path)
-        place = str(self.path if settings is None else settings)
+        place = str(self.settings or self.path)
         known = settings_of(self._network.metadata, str(self.path))
-        if settings is not None:
-            known = merge(known, _read_toml(Path(settings)), place)
+        if self.settings is not None:
+            known = merge(known, _read_toml(self.settings), place)
         self.spec: PolicySpec = build_spec(known, place)
         self._check_sizes(place)
 
@@ -100,6 +101,9 @@ class Policy:
         if name and name not in sim.robots:
             sim.robots[name]  # raises, with the nearest name
         return PolicyDriver(self, sim, name)
+
+    def __reduce__(self) -> tuple[type[Policy], tuple[Path, Path | None]]:
+        return Policy, (self.path, self.settings)  # read again where it is sent to
 
     def __repr__(self) -> str:
         return f"<gloam.Policy '{self.path.name}': {self._network.inputs} -> {self._network.outputs}, {self.spec.rate:g} Hz>"
