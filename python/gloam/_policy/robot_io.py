@@ -99,6 +99,7 @@ class RobotIo:
                 raise UnsupportedError(f"the actuator of '{self._spec.joints[i]}' is neither a motor nor a position servo",
                                        hint="filters, muscles and other dynamics are not driven by policies")
         self._gain, self._bias = gains[:, 0], biases[:, :3] * (memory.array("actuator_biastype")[at] == 1)[:, None]
+        self._has_bias, self._has_limit = bool(self._bias.any()), bool(np.isfinite(self._spec.torque_limit).any())
         square = self._gear ** 2
         # A servo of the policy's own gains takes its targets as controls.
         self.is_servo = bool(np.allclose(self._gain * square, self._spec.kp, rtol=_SAME_GAIN)
@@ -140,6 +141,10 @@ class RobotIo:
             self._ctrl[self._actuators] = targets * self._gear
             return
         q, v = self._qpos[self._q_at], self._qvel[self._v_at]
-        torque = np.clip(self._spec.kp * (targets - q) - self._spec.kd * v, -self._spec.torque_limit, self._spec.torque_limit)
-        bias = self._bias[:, 0] + self._gear * (self._bias[:, 1] * q + self._bias[:, 2] * v)
-        self._ctrl[self._actuators] = (torque / self._gear - bias) / self._gain
+        torque = self._spec.kp * (targets - q) - self._spec.kd * v
+        if self._has_limit:
+            torque = np.minimum(np.maximum(torque, -self._spec.torque_limit), self._spec.torque_limit)
+        force = torque / self._gear
+        if self._has_bias:
+            force = force - self._bias[:, 0] - self._gear * (self._bias[:, 1] * q + self._bias[:, 2] * v)
+        self._ctrl[self._actuators] = force / self._gain
