@@ -1,0 +1,133 @@
+"""Ray as gloam.distribute uses it: a cluster that is there, or one on this machine for the time of a call."""
+from __future__ import annotations
+
+import os
+import sys
+import time
+import warnings
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from typing import Any
+
+from ..errors import PartialError, UsageError
+from .jobs import Failure, Job, work
+from .manifest import Manifest
+
+Tell = Callable[[str, float, float, float], Any] | None  # task, share done, seconds, seconds left; False stops
+_LOOK = 0.2  # [s] between looks at signals and progress
+# Ray reads it when it is imported: without clusters of several machines all its processes listen on loopback.
+_LOOPBACK_ONLY = "RAY_ENABLE_WINDOWS_OR_OSX_CLUSTER"
+_STORE = 100 << 20  # [bytes] of shared memory: results travel by files
+
+
+def _ray(is_local: bool) -> Any:
+    if is_local and "ray" not in sys.modules:
+        os.environ.setdefault(_LOOPBACK_ONLY, "0")
+    try:
+        import ray
+    except ImportError as error:
+        raise ImportError("gloam.distribute runs tasks through the package 'ray', which is not installed: pip install ray") from error
+    return ray
+
+
+@contextmanager
+def cluster(address: str | None, workers: int | None) -> Iterator[Any]:
+    """Ray, connected: as it is if it is already, else to `address`, else to a new one with `workers` CPUs that ends with the block.
+
+    The new one listens on loopback only, has no dashboard and reports nothing.
+    """
+    ray = _ray(address is None)
+    if ray.is_initialized():
+        yield ray
+        return
+    os.environ.setdefault("RAY_USAGE_STATS_ENABLED", "0")
+    os.environ.setdefault("RAY_ACCEL_ENV_VAR_OVERRIDE_ON_ZERO", "0")
+    if address is not None:
+        ray.init(address=address, log_to_driver=False)
+    else:
+        if os.environ.get(_LOOPBACK_ONLY) != "0":
+            warnings.warn("ray was imported before: it will listen on all network cards; call gloam.distribute before you import it, or set "
+                          f"{_LOOPBACK_ONLY}=0", stacklevel=4)
+        ray.init(address="local", num_cpus=workers or os.cpu_count() or 1, num_gpus=0, include_dashboard=False, log_to_driver=False,
+                 configure_logging=False, object_store_memory=_STORE)
+    try:
+        yield ray
+    finally:
+        ray.shutdown()
+
+
+def _set_threads(count: int) -> None:
+    import gloam
+
+    gloam.set_thread_count(count)
+
+
+class _Progress:
+    """Tells how far the tasks are and how long they may still take, by the mean of those done in this call."""
+
+    def __init__(self, tell: Tell, total: int, done: int) -> None:
+        self._tell, self._total, self._before = tell, total, done
+        self.done = done
+        self._start = time.monotonic()
+
+    def tell(self) -> None:
+        if self._tell is None:
+            return
+        seconds = time.monotonic() - self._start
+        here = self.done - self._before
+        left = seconds / here * (self._total - self.done) if here else -1.0
+        if self._tell(f"{self.done} of {self._total} tasks", self.done / max(self._total, 1), seconds, left) is False:
+            raise PartialError("it was stopped by its progress function", hint="the same call goes on")
+
+
+def run_tasks(ray: Any, manifest: Manifest, job: Job, cpus: int, retries: int, tell: Tell) -> None:
+    """Does all tasks of the list that are not finished. What fails is in manifest.errors; the others go on.
+
+    A worker that dies (killed, out of memory) has its task done again, up to `retries` times. Few tasks wait at the cluster at once, so that
+    a call that is stopped leaves little behind.
+    """
+    missing = manifest.missing()
+    progress = _Progress(tell, len(manifest.seeds), len(manifest.seeds) - len(missing))
+    remote = ray.remote(num_cpus=cpus, max_retries=retries)(work)
+    sent = _send(ray, job)
+    waiting = list(reversed(missing))
+    running: dict[Any, int] = {}
+    try:
+        while waiting or running:
+            slots = max(1, int(ray.cluster_resources().get("CPU", 1)) // cpus) + 1
+            while waiting and len(running) < slots:
+                index = waiting.pop()
+                made = remote.remote(sent, str(manifest.out), manifest.folder(index).name, manifest.seeds[index], cpus, _set_threads)
+                running[made] = index
+            ready, _ = ray.wait(list(running), num_returns=1, timeout=_LOOK)
+            for one in ready:
+                index = running.pop(one)
+                failure = _outcome(ray, one)
+                if failure is not None:
+                    manifest.errors[index] = failure.error
+                manifest.write()
+                progress.done += 1
+            progress.tell()
+    finally:
+        for one in running:
+            ray.cancel(one, force=True)
+        manifest.write()
+
+
+def _send(ray: Any, job: Job) -> Any:
+    try:
+        return ray.put(job)
+    except (TypeError, AttributeError) as error:
+        raise UsageError(f"the function cannot be sent to workers: {str(error).splitlines()[0]}",
+                         hint="it may not hold open files, simulations or locks") from None
+
+
+def _outcome(ray: Any, reference: Any) -> Failure | None:
+    try:
+        made: Failure | None = ray.get(reference)
+        return made
+    except ray.exceptions.WorkerCrashedError:
+        return Failure("its worker died each time: killed, out of memory, or a crash")
+    except ray.exceptions.RayError as error:
+        lines = [line for line in str(error).splitlines() if line.strip()]
+        return Failure(lines[-1] if lines else type(error).__name__)

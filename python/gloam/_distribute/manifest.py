@@ -1,0 +1,138 @@
+"""The list of a folder of tasks: what was asked for, and which of it is there.
+
+A finished task is a folder OUT/0007 with task.json, which came there whole, by one rename; that is the truth. OUT/manifest.json tells the
+same for readers and is written anew whenever it changes. While a call works on a folder it holds OUT/.lock.
+"""
+from __future__ import annotations
+
+import errno
+import fcntl
+import hashlib
+import json
+import os
+import shutil
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from ..errors import InputError, IoError, UsageError
+
+TASK_FILE = "task.json"
+PART = ".part-"  # begins the names of folders that are being written
+
+
+def write_json(path: Path, value: Any) -> None:
+    """Writes a file whole or not at all, also when the process is killed."""
+    part = path.with_name(f".{path.name}.{os.getpid()}")
+    try:
+        with part.open("w", encoding="utf-8") as stream:
+            json.dump(value, stream, indent=1, allow_nan=False)
+            stream.write("\n")
+            stream.flush()
+            os.fsync(stream.fileno())
+        part.replace(path)
+    except OSError as error:
+        raise IoError(f"it cannot be written: {error.strerror}", str(path)) from None
+
+
+def read_task(folder: Path) -> dict[str, Any] | None:
+    """What a finished task left; None where it is not finished."""
+    try:
+        made: dict[str, Any] = json.loads((folder / TASK_FILE).read_text(encoding="utf-8"))
+    except (FileNotFoundError, NotADirectoryError):
+        return None
+    except (OSError, ValueError) as error:
+        raise InputError(f"it is damaged: {error}", str(folder / TASK_FILE), hint="remove that folder, it is made again") from None
+    return made
+
+
+def publish(part: Path, target: Path) -> bool:
+    """Moves a finished folder to its place. False: another worker was faster; then `part` is left where it is."""
+    try:
+        os.rename(part, target)
+    except OSError as error:
+        if error.errno in (errno.ENOTEMPTY, errno.EEXIST):
+            return False
+        raise
+    return True
+
+
+class Manifest:
+    """Tasks of one folder, by their seeds. Raises UsageError: it holds tasks of another request, or another call works on it now."""
+
+    def __init__(self, out: Path, kind: str, request: Mapping[str, Any], seeds: Sequence[int], overwrite: bool) -> None:
+        self.out = out
+        self.kind = kind
+        self.seeds = tuple(seeds)
+        self.errors: dict[int, str] = {}
+        self._request = dict(request)
+        self._print = hashlib.sha256(json.dumps([kind, self._request], sort_keys=True).encode()).hexdigest()
+        try:
+            out.mkdir(parents=True, exist_ok=True)
+            self._lock = (out / ".lock").open("w", encoding="utf-8")
+        except OSError as error:
+            raise IoError(f"the folder cannot be made: {error.strerror}", str(out)) from None
+        try:
+            fcntl.flock(self._lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except OSError:
+            self._lock.close()
+            raise UsageError(f"another call works on {out} now") from None
+        try:
+            self._open(overwrite)
+        except BaseException:
+            self.close()
+            raise
+
+    def _open(self, overwrite: bool) -> None:
+        known = self._read()
+        if overwrite and known is not None:
+            for task in known.get("tasks", []):
+                shutil.rmtree(self.out / Path(str(task["folder"])).name, ignore_errors=True)
+        elif known is not None and known.get("print") != self._print:
+            raise UsageError(f"{self.out} holds tasks of another request", hint="give another out, or overwrite=True")
+        self.remove_parts()
+        for index, seed in enumerate(self.seeds):
+            task = read_task(self.folder(index))
+            if task is not None and task.get("seed") != seed:
+                raise UsageError(f"{self.folder(index)} was made with seed {task.get('seed')}, not {seed}",
+                                 hint="give another out, or overwrite=True")
+            if task is None and self.folder(index).exists():
+                raise UsageError(f"{self.folder(index)} is there and no task made it", hint="give another out")
+        self.write()
+
+    def _read(self) -> dict[str, Any] | None:
+        path = self.out / "manifest.json"
+        try:
+            made = json.loads(path.read_text(encoding="utf-8"))
+        except FileNotFoundError:
+            return None
+        except (OSError, ValueError) as error:
+            raise InputError(f"it is damaged: {error}", str(path), hint="give another out") from None
+        if not isinstance(made, dict) or not isinstance(made.get("tasks"), list):
+            raise InputError("it is no list of tasks", str(path), hint="give another out")
+        return made
+
+    def remove_parts(self) -> None:
+        """Removes what workers that died have left. Nobody works on the folder when this is called."""
+        for part in self.out.glob(f"{PART}*"):
+            shutil.rmtree(part, ignore_errors=True)
+
+    def folder(self, index: int) -> Path:
+        return self.out / f"{index:04}"
+
+    def missing(self) -> list[int]:
+        """Places of the tasks that are not finished, in order."""
+        return [index for index in range(len(self.seeds)) if read_task(self.folder(index)) is None]
+
+    def write(self) -> None:
+        """Writes OUT/manifest.json: request, and of each task seed, folder, state and error."""
+        missing = set(self.missing())
+        tasks = []
+        for index, seed in enumerate(self.seeds):
+            state = "done" if index not in missing else "failed" if index in self.errors else "waiting"
+            task = {"seed": seed, "folder": self.folder(index).name, "state": state}
+            tasks.append({**task, "error": self.errors[index]} if state == "failed" else task)
+        write_json(self.out / "manifest.json", {"kind": self.kind, "print": self._print, "request": self._request, "tasks": tasks})
+
+    def close(self) -> None:
+        self._lock.close()  # which unlocks

@@ -1,0 +1,1 @@
+"""Parts of gloam.policy: what a network was trained with, its observation, its robot."""

@@ -1,0 +1,112 @@
+"""Policies: networks in ONNX files that drive robots (docs/policies.md).
+
+    policy = gloam.Policy("walk.onnx", "walk.toml")     # the TOML only where the file's metadata does not tell enough
+    drive = policy.attach(sim, "go2")
+    drive.command(vx=0.5)
+    sim.run_until(time=5)
+"""
+from __future__ import annotations
+
+import os
+import tomllib
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ._policy.driver import PolicyDriver
+from ._policy.metadata import merge, settings_of
+from ._policy.network import Network
+from ._policy.spec import PolicySpec, Term, build_spec
+from ._policy.terms import TERMS, TermInfo
+from .errors import DivergedError, InputError, IoError, UsageError
+
+if TYPE_CHECKING:
+    from .elements import Robot
+    from .simulation import Simulation
+
+PathLike = str | os.PathLike[str]
+
+
+def _read_toml(path: Path) -> dict[str, Any]:
+    try:
+        return tomllib.loads(path.read_text(encoding="utf-8"))
+    except OSError as error:
+        raise IoError(f"it cannot be read: {error.strerror}", str(path)) from None
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+        raise InputError(f"it is no TOML: {error}", str(path)) from None
+
+
+def read_policy_metadata(path: PathLike) -> dict[str, Any]:
+    """What an ONNX file tells of its policy, as {"policy": {...}, "observation": [...]} in the form of a policy's TOML.
+
+    Empty where its metadata is neither mjlab's nor holosoma's. Raises as Policy.
+    """
+    return settings_of(Network(Path(path)).metadata, str(path))
+
+
+class Policy:
+    """A network with what it was trained with: `spec`. One thread, f32, on the CPU: the same observation gives the same action.
+
+    `settings`: a TOML whose keys replace those of the file's metadata. Raises ImportError: no package openvino; IoError: no such file;
+    InputError: no network, a damaged TOML, terms that do not fill the network's input, too little known; UnsupportedError: several inputs.
+    """
+
+    def __init__(self, path: PathLike, settings: PathLike | None = None) -> None:
+        self.path = Path(path).absolute()
+        self.settings = None if settings is None else Path(settings).absolute()
+        self._network = Network(self.path)
+        place = str(self.settings or self.path)
+        known = settings_of(self._network.metadata, str(self.path))
+        if self.settings is not None:
+            known = merge(known, _read_toml(self.settings), place)
+        self.spec: PolicySpec = build_spec(known, place)
+        self._check_sizes(place)
+
+    def _check_sizes(self, place: str) -> None:
+        spec, network = self.spec, self._network
+        if spec.observation_size != network.inputs:
+            parts = ", ".join(f"{term.name} {size}" for term, size in zip(spec.terms, spec.term_sizes(), strict=True))
+            raise InputError(f"the observation terms give {spec.observation_size} numbers, the network takes {network.inputs}", place,
+                             hint=parts)
+        if len(spec.joints) != network.outputs:
+            raise InputError(f"there are {len(spec.joints)} joints, the network gives {network.outputs} numbers", place)
+
+    def infer(self, observation: ArrayLike) -> NDArray[np.float64]:
+        """Actions (n,) of an observation (m,), or (k, n) of (k, m), as the network gives them: not clipped, not scaled.
+
+        Raises UsageError: another size; DivergedError: an action is not finite.
+        """
+        array = np.asarray(observation, dtype=np.float32)
+        if array.ndim not in (1, 2) or array.shape[-1] != self._network.inputs:
+            raise UsageError(f"an observation of {self._network.inputs} numbers is expected, not of shape {array.shape}")
+        if array.ndim == 2:
+            rows = [self.infer(row) for row in array]
+            return np.stack(rows) if rows else np.zeros((0, self._network.outputs))
+        action = self._network.run(array)
+        if not np.isfinite(action).all():
+            joint = self.spec.joints[int(np.flatnonzero(~np.isfinite(action))[0])]
+            cause = "its observation is finite" if np.isfinite(array).all() else "its observation is not finite either"
+            raise DivergedError(f"the network's action for '{joint}' is not finite, {cause}", str(self.path))
+        return action
+
+    def attach(self, sim: Simulation, robot: Robot | str) -> PolicyDriver:
+        """Lets the policy drive a robot of a simulation from its next step on; "" = a bare model without robots.
+
+        Raises NotFoundError: joints or actuators that the robot has not; UnsupportedError: actuators that take no torque; UsageError: a
+        timestep that does not divide the policy's period, a robot that is driven already.
+        """
+        name = robot if isinstance(robot, str) else robot.name
+        if name and name not in sim.robots:
+            sim.robots[name]  # raises, with the nearest name
+        return PolicyDriver(self, sim, name)
+
+    def __reduce__(self) -> tuple[type[Policy], tuple[Path, Path | None]]:
+        return Policy, (self.path, self.settings)  # read again where it is sent to
+
+    def __repr__(self) -> str:
+        return f"<gloam.Policy '{self.path.name}': {self._network.inputs} -> {self._network.outputs}, {self.spec.rate:g} Hz>"
+
+
+__all__ = ["TERMS", "Policy", "PolicyDriver", "PolicySpec", "Term", "TermInfo", "read_policy_metadata"]

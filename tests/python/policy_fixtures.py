@@ -1,0 +1,95 @@
+"""Small networks, robots and settings for tests of policies."""
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+
+import numpy as np
+import onnx
+from onnx import TensorProto, helper, numpy_helper
+
+# Two hinges that hang below a floating base. Names of joints and motors differ; the motor of "knee" has a gear.
+BIPED = """<mujoco model="leg">
+  <option timestep="0.005" gravity="0 0 0"/>
+  <worldbody>
+    <body name="base" pos="0 0 1">
+      <freejoint name="root"/>
+      <geom type="box" size=".1 .1 .1" mass="5"/>
+      <site name="imu"/>
+      <body name="thigh" pos="0 0 -.1">
+        <joint name="hip" axis="0 1 0"/>
+        <geom type="capsule" fromto="0 0 0 0 0 -.2" size=".03" mass="1"/>
+        <body name="shank" pos="0 0 -.25">
+          <joint name="knee" axis="0 1 0"/>
+          <geom type="capsule" fromto="0 0 0 0 0 -.2" size=".03" mass="1"/>
+        </body>
+      </body>
+    </body>
+  </worldbody>
+  <actuator>{actuators}</actuator>
+  <sensor><gyro name="gyro" site="imu"/></sensor>
+</mujoco>"""
+MOTORS = '<motor name="m_hip" joint="hip"/><motor name="m_knee" joint="knee" gear="2"/>'
+
+POLICY = """
+[policy]
+rate = 50
+joints = ["knee", "hip"]
+kp = [10.0, 20.0]
+kd = 0.5
+default_positions = [0.3, -0.2]
+action_scale = 0.5
+"""
+OBSERVATION = """
+[[observation]]
+term = "joint_pos"
+
+[[observation]]
+term = "joint_vel"
+
+[[observation]]
+term = "velocity_commands"
+"""
+
+
+def write_network(path: Path, weights: np.ndarray, bias: np.ndarray | None = None, metadata: Mapping[str, str] | None = None,
+                  inputs: tuple[str, ...] = ("obs",)) -> Path:
+    """An ONNX file: actions = weights @ obs + bias; (outputs, inputs). More `inputs` are declared and not used."""
+    outputs, size = weights.shape
+    bias = np.zeros(outputs) if bias is None else np.asarray(bias)
+    tensors = [numpy_helper.from_array(weights.T.astype(np.float32), "w"), numpy_helper.from_array(bias.astype(np.float32), "b")]
+    nodes = [helper.make_node("MatMul", ["obs", "w"], ["wx"]), helper.make_node("Add", ["wx", "b"], ["y0"])]
+    last = "y0"
+    for i, name in enumerate(inputs[1:]):
+        nodes.append(helper.make_node("Add", [last, name], [f"y{i + 1}"]))
+        last = f"y{i + 1}"
+    nodes.append(helper.make_node("Identity", [last], ["actions"]))
+    ports = [helper.make_tensor_value_info(inputs[0], TensorProto.FLOAT, [1, size])]
+    ports += [helper.make_tensor_value_info(name, TensorProto.FLOAT, [1, 1]) for name in inputs[1:]]
+    result = helper.make_tensor_value_info("actions", TensorProto.FLOAT, [1, outputs])
+    model = helper.make_model(helper.make_graph(nodes, "g", ports, [result], tensors), opset_imports=[helper.make_opsetid("", 17)])
+    model.ir_version = 8
+    if metadata:
+        helper.set_model_props(model, dict(metadata))
+    onnx.save(model, path)
+    return path
+
+
+def write_model(folder: Path, actuators: str = MOTORS) -> Path:
+    path = folder / "leg.xml"
+    path.write_text(BIPED.format(actuators=actuators))
+    return path
+
+
+def write_scene(folder: Path, actuators: str = MOTORS, name: str = "bot") -> Path:
+    """A scene with one robot, whose joints are NAME/hip and NAME/knee."""
+    write_model(folder, actuators)
+    path = folder / "scene.toml"
+    path.write_text(f'[scene]\nname = "leg"\n[sim]\ntimestep = 0.005\n[[robot]]\nname = "{name}"\nfile = "leg.xml"\n')
+    return path
+
+
+def write_settings(folder: Path, text: str = POLICY + OBSERVATION) -> Path:
+    path = folder / "policy.toml"
+    path.write_text(text)
+    return path

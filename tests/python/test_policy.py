@@ -1,0 +1,300 @@
+"""Policies at work: joints, torques, histories, resets, recompiles, and robots that walk."""
+from __future__ import annotations
+
+import pickle
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+pytest.importorskip("openvino")
+pytest.importorskip("onnx")
+import gloam  # noqa: E402
+from gloam.policy import Policy, PolicyDriver  # noqa: E402
+from policy_fixtures import OBSERVATION, POLICY, write_network, write_scene, write_settings  # noqa: E402
+
+KP, KD, DEFAULTS = np.array([10.0, 20.0]), 0.5, np.array([0.3, -0.2])  # of knee, hip
+HELD = np.array([0.375, -0.625])  # actions of the network without inputs, exact in f32
+
+
+class Seen:
+    """A policy whose observations are kept."""
+
+    def __init__(self, policy: Policy, monkeypatch: pytest.MonkeyPatch) -> None:
+        self.observations: list[np.ndarray] = []
+        infer = policy.infer
+
+        def keep(observation: Any) -> Any:
+            self.observations.append(np.array(observation))
+            return infer(observation)
+
+        monkeypatch.setattr(policy, "infer", keep)
+
+
+def held_policy(folder: Path, terms: str = OBSERVATION, size: int = 7, extra: str = "") -> Policy:
+    """Always the actions HELD."""
+    return Policy(write_network(folder / "p.onnx", np.zeros((2, size)), HELD), write_settings(folder, POLICY + extra + terms))
+
+
+@pytest.fixture
+def sim(tmp_path: Path) -> Iterator[gloam.Simulation]:
+    with gloam.load(write_scene(tmp_path)) as made:
+        yield made
+
+
+def joint_state(sim: gloam.Simulation) -> tuple[np.ndarray, np.ndarray]:
+    """(knee, hip), the policy's order."""
+    joints = [sim.joints["bot/knee"], sim.joints["bot/hip"]]
+    return np.array([j.position for j in joints]), np.array([j.velocity for j in joints])
+
+
+def test_torques_are_the_policys_at_every_step_whatever_the_gear(sim: gloam.Simulation, tmp_path: Path) -> None:
+    drive = held_policy(tmp_path).attach(sim, "bot")
+    assert not drive.is_servo
+    targets = DEFAULTS + 0.5 * HELD
+    for _ in range(20):
+        q, v = joint_state(sim)
+        sim.step()
+        np.testing.assert_allclose(sim.memory.array("actuator_force") * [1, 2], (KP * (targets - q) - KD * v)[::-1], atol=1e-12)
+    np.testing.assert_allclose(drive.targets, targets, atol=1e-7)
+    assert abs(joint_state(sim)[0]).min() > 0.01  # it moved
+
+
+@pytest.mark.parametrize("actuators", [
+    '<position name="a" joint="hip" kp="55" kv="3"/><position name="b" joint="knee" kp="5" gear="2"/>',
+    '<general name="a" joint="hip" gainprm="2" biastype="affine" biasprm="0.5 -1 -0.1"/><motor name="b" joint="knee"/>',
+    '<motor name="b" joint="knee"/><motor name="a" joint="hip" gear="-3"/>',
+])
+def test_servos_of_other_gains_give_the_policys_torques(tmp_path: Path, actuators: str) -> None:
+    hashes = []
+    for name, kind in (("a", actuators), ("b", '<motor name="b" joint="knee"/><motor name="a" joint="hip"/>')):
+        folder = tmp_path / name
+        folder.mkdir()
+        with gloam.load(write_scene(folder, kind)) as sim:
+            held_policy(folder).attach(sim, "bot")
+            sim.step(200)
+            hashes.append(np.concatenate(joint_state(sim)))
+    np.testing.assert_allclose(hashes[0], hashes[1], atol=1e-9)
+
+
+def test_servos_of_the_same_gains_get_targets(tmp_path: Path) -> None:
+    servos = '<position name="a" joint="hip" kp="20" kv="0.5"/><position name="b" joint="knee" kp="10" kv="0.5"/>'
+    with gloam.load(write_scene(tmp_path, servos)) as sim:
+        drive = held_policy(tmp_path).attach(sim, "bot")
+        assert drive.is_servo
+        sim.step()
+        np.testing.assert_allclose(sim.robots["bot"].controls, (DEFAULTS + 0.5 * HELD)[::-1], atol=1e-7)
+
+
+def test_torque_limit(sim: gloam.Simulation, tmp_path: Path) -> None:
+    held_policy(tmp_path, extra="torque_limit = [0.25, 100.0]\n").attach(sim, "bot")
+    sim.step()
+    assert sim.memory.array("actuator_force")[1] * 2 == pytest.approx(0.25)
+
+
+def test_observation_of_a_turned_and_moving_robot(sim: gloam.Simulation, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    names = ("base_lin_vel", "base_ang_vel", "projected_gravity", "joint_pos", "joint_vel", "last_action", "command", "base_ang_vel")
+    terms = "".join(f'[[observation]]\nterm = "{name}"\n' for name in names) + 'sensor = "gyro"\n'
+    policy = held_policy(tmp_path, terms, 3 * 3 + 3 * 2 + 3 + 3)
+    seen = Seen(policy, monkeypatch)
+    policy.attach(sim, "bot").command(vx=0.1, vy=-0.2, yaw_rate=0.3)
+    half = np.sqrt(0.5)  # a quarter turn about x: the base's y is the world's z, its z the world's -y
+    sim.joints["bot/root"].set(qpos=[0, 0, 1, half, half, 0, 0], qvel=[1, 2, 3, 0.1, 0.2, 0.3])
+    sim.joints["bot/knee"].set(qpos=[0.7], qvel=[0.5])
+    sim.step(5)
+    first, second = seen.observations
+    np.testing.assert_allclose(first[0:3], [1, 3, -2], atol=1e-6)
+    np.testing.assert_allclose(first[3:6], [0.1, 0.2, 0.3], atol=1e-6)
+    np.testing.assert_allclose(first[6:9], [0, -1, 0], atol=1e-6)
+    np.testing.assert_allclose(first[9:13], [0.7 - 0.3, 0.2, 0.5, 0.0], atol=1e-6)
+    np.testing.assert_allclose(first[13:18], [0, 0, 0.1, -0.2, 0.3], atol=1e-6)
+    np.testing.assert_allclose(second[13:15], HELD, atol=1e-6)
+
+
+def test_clip_then_scale_then_history_oldest_first(sim: gloam.Simulation, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    terms = '[[observation]]\nterm = "command"\nclip = [-1, 0.5]\nscale = [1, 10, 100]\nhistory = 3\n'
+    policy = held_policy(tmp_path, terms, 9)
+    seen = Seen(policy, monkeypatch)
+    drive = policy.attach(sim, "bot")
+    for vx in (0.2, 0.4, 5.0):
+        drive.command(vx, -0.3, 0.05)
+        sim.step(4)
+    rows = [o.reshape(3, 3) for o in seen.observations]
+    np.testing.assert_allclose(rows[0], [[0.2, -3, 5]] * 3, rtol=1e-6)  # the first one stands for those before it
+    np.testing.assert_allclose(rows[2][:, 0], [0.2, 0.4, 0.5], rtol=1e-6)
+    sim.reset()
+    sim.step()
+    np.testing.assert_allclose(seen.observations[3].reshape(3, 3)[:, 0], [0.5] * 3)  # nothing of the run before
+
+
+def test_history_that_starts_with_zeros(sim: gloam.Simulation, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    policy = held_policy(tmp_path, '[[observation]]\nterm = "command_ang_vel"\nhistory = 3\n', 3, 'history_start = "zeros"\n')
+    seen = Seen(policy, monkeypatch)
+    policy.attach(sim, "bot").command(yaw_rate=0.5)
+    sim.step(5)
+    assert [o.tolist() for o in seen.observations] == [[0, 0, 0.5], [0, 0.5, 0.5]]
+
+
+def test_gait_phases(sim: gloam.Simulation, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    terms = "".join(f'[[observation]]\nterm = "{name}"\n' for name in ("sin_phase", "cos_phase", "phase"))
+    policy = held_policy(tmp_path, terms, 6, "gait_period = 0.8\n")
+    seen = Seen(policy, monkeypatch)
+    drive = policy.attach(sim, "bot")
+    sim.step()
+    np.testing.assert_allclose(seen.observations[-1], [0, 0, -1, -1, 0, -1], atol=1e-6)  # it stands
+    drive.command(vx=0.5)
+    sim.step(3 + 4 * 10 + 1)  # the step that begins anew, then a quarter of the period: 10 of 40 control periods
+    np.testing.assert_allclose(seen.observations[-1], [1, -1, 0, 0, 1, 0], atol=1e-6)
+
+
+def test_reset_gives_the_same_run_and_leaves_others_alone(tmp_path: Path) -> None:
+    weights = np.random.default_rng(0).normal(size=(2, 13)) / 100
+    terms = OBSERVATION.replace('term = "joint_vel"', 'term = "joint_vel"\nhistory = 4')
+    policy = Policy(write_network(tmp_path / "p.onnx", weights), write_settings(tmp_path, POLICY + terms))
+    world = gloam.Scene(write_scene(tmp_path)).compile()
+    with gloam.Simulation(world) as a, gloam.Simulation(world) as b, gloam.Simulation(world) as alone:
+        for sim in (a, b, alone):
+            policy.attach(sim, "bot").command(vx=0.3)
+        alone.step(250)
+        for _ in range(5):
+            a.step(30)
+            b.step(50)
+            a.reset()  # which is none of b's business
+        a.step(250)
+        assert a.hash == alone.hash and b.hash == alone.hash
+
+
+def test_restore_begins_anew(sim: gloam.Simulation, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    policy = held_policy(tmp_path, '[[observation]]\nterm = "last_action"\n', 2)
+    seen = Seen(policy, monkeypatch)
+    policy.attach(sim, "bot")
+    sim.step(10)
+    there = sim.checkpoint()
+    sim.step(10)
+    sim.restore(there)
+    sim.step()
+    assert seen.observations[-1].tolist() == [0, 0]
+
+
+def test_recompile_goes_on_with_the_new_world(sim: gloam.Simulation, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    policy = held_policy(tmp_path)
+    seen = Seen(policy, monkeypatch)
+    drive = policy.attach(sim, "bot")
+    sim.step(10)
+    scene = sim.scene
+    scene.add("robot", name="another", file="leg.xml", position=[2, 0, 0])  # indices of all joints may move
+    sim.recompile(scene)
+    q, v = joint_state(sim)
+    sim.step()
+    torque = KP * (drive.targets - q) - KD * v
+    names = sim.world.actuators
+    force = sim.memory.array("actuator_force")
+    assert force[names.index("bot/m_knee")] * 2 == pytest.approx(torque[0])
+    assert force[names.index("another/m_knee")] == 0
+    assert len(seen.observations) == 3  # at steps 0, 4 and 8: the rhythm goes on
+
+
+def test_two_robots_by_one_policy_and_detach(tmp_path: Path) -> None:
+    scene = gloam.Scene(write_scene(tmp_path))
+    scene.add("robot", name="two", file="leg.xml", position=[2, 0, 0])
+    policy = held_policy(tmp_path)
+    with gloam.load(scene) as sim:
+        one = policy.attach(sim, "bot")
+        with policy.attach(sim, sim.robots["two"]) as two:
+            with pytest.raises(gloam.UsageError, match="driven by a policy already"):
+                policy.attach(sim, "two")
+            sim.step()
+            assert np.abs(sim.robots["two"].controls).min() > 0 and np.abs(sim.robots["bot"].controls).min() > 0
+            left = sim.robots["two"].controls.copy()
+            assert isinstance(two, PolicyDriver)
+        sim.step(10)
+        np.testing.assert_array_equal(sim.robots["two"].controls, left)
+        one.detach()
+        one.detach()
+        policy.attach(sim, "bot")
+
+
+def test_names_that_the_robot_has_not(tmp_path: Path) -> None:
+    with gloam.load(write_scene(tmp_path)) as sim:
+        for old, new, says in (('"hip"', '"hop"', "has no joint bot/hop.*did you mean 'bot/hip'"), ('"hip"', '"root"', "neither a hinge")):
+            folder = tmp_path / new.strip('"')
+            folder.mkdir()
+            settings = write_settings(folder, (POLICY + OBSERVATION).replace(old, new))
+            with pytest.raises(gloam.Error, match=says):
+                Policy(write_network(folder / "p.onnx", np.zeros((2, 7))), settings).attach(sim, "bot")
+        with pytest.raises(gloam.NotFoundError, match="bot"):
+            held_policy(tmp_path).attach(sim, "bt")
+        with pytest.raises(gloam.NotFoundError, match="has no sensor bot/giro.*did you mean 'bot/gyro'"):
+            held_policy(tmp_path, '[[observation]]\nterm = "base_ang_vel"\nsensor = "giro"\n', 3).attach(sim, "bot")
+        with pytest.raises(gloam.UnsupportedError, match="'gyro' has 3 numbers"):
+            held_policy(tmp_path, '[[observation]]\nterm = "joint_pos"\nsensor = "gyro"\n', 2).attach(sim, "bot")
+        assert sim.step() is None  # no driver was left behind
+
+
+@pytest.mark.parametrize("actuators, says", [
+    ('<motor name="a" joint="hip"/>', "'bot/knee' has no actuator"),
+    ('<motor name="a" joint="hip"/><motor name="b" joint="knee"/><motor name="c" joint="hip"/>', "'bot/hip' has several actuators"),
+    ('<motor name="a" joint="hip"/><muscle name="b" joint="knee" ctrlrange="0 1" lengthrange="0 1"/>', "neither a motor nor a position servo"),
+    ('<motor name="a" joint="hip"/><position name="b" joint="knee" kp="1" timeconst="0.1"/>', "neither a motor nor a position servo"),
+])
+def test_actuators_that_policies_do_not_drive(tmp_path: Path, actuators: str, says: str) -> None:
+    with gloam.load(write_scene(tmp_path, actuators)) as sim, pytest.raises(gloam.Error, match=says):
+        held_policy(tmp_path).attach(sim, "bot")
+
+
+def test_other_names_in_the_model(sim: gloam.Simulation, tmp_path: Path) -> None:
+    text = (POLICY + OBSERVATION).replace('["knee", "hip"]', '["robot/knee_dof", "robot/hip"]')
+    settings = write_settings(tmp_path, text.replace("[[obs", '[policy.model_joints]\n"robot/knee_dof" = "knee"\n\n[[obs', 1))
+    Policy(write_network(tmp_path / "p.onnx", np.zeros((2, 7)), HELD), settings).attach(sim, "bot")
+    sim.step()
+    assert sim.memory.array("actuator_force")[1] * 2 == pytest.approx(KP[0] * (DEFAULTS[0] + 0.5 * HELD[0]))
+
+
+def test_commands(sim: gloam.Simulation, tmp_path: Path) -> None:
+    drive = held_policy(tmp_path, extra="command_ranges = { vx = [-0.5, 1.0], yaw_rate = 2 }\n").attach(sim, "bot")
+    assert drive.command(vx=3, vy=-7, yaw_rate=-3) == (1.0, -7.0, -2.0)
+    assert drive.command() == (0.0, 0.0, 0.0)
+    for wrong in (float("nan"), float("inf"), None):
+        with pytest.raises(gloam.UsageError, match="a commanded vx is a finite number"):
+            drive.command(vx=wrong)  # type: ignore[arg-type]
+
+
+def test_a_rate_that_no_number_of_steps_gives(tmp_path: Path) -> None:
+    with gloam.load(write_scene(tmp_path), timestep=0.003) as sim, pytest.raises(gloam.UsageError, match="take a timestep of 0.0028"):
+        held_policy(tmp_path).attach(sim, "bot")
+
+
+def test_outputs_that_are_no_numbers_stop_the_run_in_words(sim: gloam.Simulation, tmp_path: Path) -> None:
+    weights = np.zeros((2, 7))
+    weights[1, 4] = 3e38  # of vx
+    drive = Policy(write_network(tmp_path / "p.onnx", weights), write_settings(tmp_path)).attach(sim, "bot")
+    sim.step(10)
+    drive.command(vx=100)
+    with pytest.raises(gloam.DivergedError, match="action for 'hip' is not finite, its observation is finite"):
+        sim.step(10)
+
+
+def test_place(sim: gloam.Simulation, tmp_path: Path) -> None:
+    drive = held_policy(tmp_path).attach(sim, "bot")
+    sim.step(20)
+    drive.place((1, 2, 3), yaw=np.pi / 2)
+    sim.step()
+    np.testing.assert_allclose(sim.robots["bot"].pose.p, [1, 2, 3], atol=0.01)
+    np.testing.assert_allclose(joint_state(sim)[0], DEFAULTS, atol=0.05)
+
+
+def test_log_verifies_without_the_network(sim: gloam.Simulation, tmp_path: Path) -> None:
+    drive = held_policy(tmp_path).attach(sim, "bot")
+    with sim.record(tmp_path / "run.mcap", ["/clock"]):
+        sim.step(50)
+        drive.command(vx=1)
+        sim.step(50)
+    assert gloam.replay(tmp_path / "run.mcap").verify().differing_steps == 0
+
+
+def test_policies_can_be_sent(tmp_path: Path) -> None:
+    policy = held_policy(tmp_path)
+    again = pickle.loads(pickle.dumps(policy))
+    np.testing.assert_array_equal(again.infer(np.ones(7)), policy.infer(np.ones(7)))
