@@ -16,6 +16,7 @@
 #include "gloam/checkpoint.h"
 #include "gloam/command.h"
 #include "gloam/control_lease.h"
+#include "gloam/physics_memory.h"
 #include "gloam/result.h"
 #include "gloam/scene.h"
 #include "gloam/sensor.h"
@@ -88,6 +89,7 @@ class Simulation {
   /// at.
   virtual std::vector<LoggedCommand> take_command_log() = 0;
   virtual Snapshot latest() const = 0;
+  virtual PhysicsMemory memory() = 0;
   virtual SimulationStats stats() const = 0;
   /// Called on the physics thread before every step, after Commands and controllers, with the
   /// private model and data: what it writes into mjData counts as input. Set before the first step.

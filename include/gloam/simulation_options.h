@@ -5,6 +5,7 @@
 #include <string>
 
 #include "gloam/handle.h"
+#include "gloam/physics_memory.h"
 #include "gloam/types.h"
 
 namespace gloam {
@@ -19,7 +20,8 @@ struct SimulationOptions {
   uint64_t seed = 1;
   double timestep = 0;  ///< [s]; 0 = the model's own
   Pace pace = Pace::kFast;
-  double speed = 1;  ///< of Pace::kRealTime, > 0
+  double speed = 1;          ///< of Pace::kRealTime, > 0
+  DataMaker make_data = {};  ///< empty = the simulation makes its own
 };
 
 struct SimulationStats {

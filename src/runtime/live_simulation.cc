@@ -54,6 +54,7 @@ Result<std::unique_ptr<LiveSimulation>> LiveSimulation::create(const World& worl
   if (options.timestep != 0) core.timestep = options.timestep;
   core.pace = options.pace;
   core.speed = options.speed;
+  core.make_data = options.make_data;
   core.command_capacity += static_cast<int>(std::min(how.commands, size_t{1} << 19));
   GLOAM_TRY(live->simulator_, Simulator::create(world.compiled(), core));
   if (how.motion != nullptr) {

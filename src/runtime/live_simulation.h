@@ -57,6 +57,7 @@ class LiveSimulation final : public Simulation {
   Result<std::unique_ptr<ControlLease>> claim(Robot robot) override;
   std::vector<LoggedCommand> take_command_log() override { return simulator_->take_command_log(); }
   Snapshot latest() const override { return simulator_->latest(); }
+  PhysicsMemory memory() override { return simulator_->memory(); }
   SimulationStats stats() const override;
   Status set_step_hook(std::function<void(const mjModel_*, mjData_*)> hook) override;
   Result<std::unique_ptr<CameraStream>> open_camera(const CameraRequest& request,

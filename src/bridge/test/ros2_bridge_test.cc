@@ -32,6 +32,17 @@ bool comes_true(const std::function<bool()>& condition, std::chrono::seconds pat
   return condition();
 }
 
+// Writes a message again and again until it has had its effect.
+bool says_until(DdsWriter& writer, const std::vector<uint8_t>& message,
+                const std::function<bool()>& condition) {
+  const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(20);
+  while (std::chrono::steady_clock::now() < end) {
+    writer.write(message);
+    if (comes_true(condition, std::chrono::seconds(1))) return true;
+  }
+  return false;
+}
+
 // Tests of several processes do not meet.
 int test_domain(int offset) { return 20 + (static_cast<int>(getpid()) + offset * 31) % 80; }
 
@@ -148,21 +159,22 @@ TEST_F(Ros2BridgeTest, DamagedMessagesAreRefusedAndCounted) {
       {.topic = "rt/quadruped/cmd_vel", .type = "geometry_msgs::msg::dds_::Twist_"});
   ASSERT_TRUE(comes_true([&] { return writer->readers() == 1; }, std::chrono::seconds(20)));
   const auto before = simulation_->stats().commands_applied;
+  const Bridge& bridge = *bridges->list().front();
   for (size_t size = 0; size < 52; ++size) {  // a Twist has 4 + 48 bytes
     std::vector<uint8_t> bytes(size, 0xff);
     if (size > 1) bytes[0] = 0, bytes[1] = 1;
     writer->write(bytes);
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }
-  const Bridge& bridge = *bridges->list().front();
-  EXPECT_TRUE(comes_true([&] { return bridge.stats().refused >= 40; }, std::chrono::seconds(5)));
+  // The reader may not know the writer yet, and a busy one keeps the last ten alone.
+  EXPECT_TRUE(says_until(*writer, std::vector<uint8_t>(20, 0xff),
+                         [&] { return bridge.stats().refused >= 40; }));
   EXPECT_EQ(bridge.stats().messages_in, 0);
   EXPECT_TRUE(simulation_->step(2).ok());
   EXPECT_EQ(simulation_->stats().commands_applied, before);
   std::vector<uint8_t> good;
   encode(geometry_msgs::Twist{{0.3, 0, 0}, {}}, &good);
-  writer->write(good);
-  EXPECT_TRUE(comes_true([&] { return bridge.stats().messages_in == 1; }, std::chrono::seconds(5)));
+  EXPECT_TRUE(says_until(*writer, good, [&] { return bridge.stats().messages_in >= 1; }));
 }
 
 TEST_F(Ros2BridgeTest, ASilentMasterLosesItsRobotWhichThenStands) {
@@ -180,15 +192,14 @@ TEST_F(Ros2BridgeTest, ASilentMasterLosesItsRobotWhichThenStands) {
   std::vector<uint8_t> forward;
   encode(geometry_msgs::Twist{{0.3, 0, 0}, {}}, &forward);
   simulation_->resume();
-  writer->write(forward);
-  ASSERT_TRUE(comes_true([&] { return inlets.heard() == 1; }, std::chrono::seconds(5)));
+  ASSERT_TRUE(says_until(*writer, forward, [&] { return inlets.heard() >= 1; }));
   const Robot robot = *world_.find_robot("quadruped");
   EXPECT_FALSE(simulation_->claim(robot).ok()) << "it has a master";
   std::this_thread::sleep_for(std::chrono::milliseconds(1200));
   inlets.release_silent();
   EXPECT_TRUE(simulation_->claim(robot).ok());
   ASSERT_TRUE(comes_true([&] { return simulation_->stats().commands_applied >= 2; },
-                         std::chrono::seconds(5)));
+                         std::chrono::seconds(20)));
   const auto log = simulation_->take_command_log();
   EXPECT_EQ(std::get<SetVelocityGoal>(log.back().command.what).vx, 0);
 }

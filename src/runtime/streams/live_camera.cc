@@ -123,6 +123,7 @@ SnapshotWindow LiveCamera::next_window() {
     if (refresh_wanted_.exchange(false)) {  // an instant: nothing moves
       SnapshotWindow window;
       window.add(simulator_.latest());
+      queue_->count_own();
       return window;
     }
   }

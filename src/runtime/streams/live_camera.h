@@ -28,6 +28,8 @@ class LiveCamera final : public CameraStream {
   Pose pose() const override;
   void refresh() override;
   int64_t dropped() const override { return thread_.dropped(); }
+  int64_t complete_at(int64_t from) const override { return thread_.complete_at(from); }
+  void flush() override { thread_.flush(); }
   Status status() const override { return thread_.status(); }
   /// Waits until the simulation has stopped and every frame was delivered.
   void drain() { thread_.drain(); }

@@ -77,15 +77,23 @@ Status LiveLidar::follow(const std::shared_ptr<const CompiledWorld>& world) {
   const Rational key_rate{rate.num * stretches, rate.den};
   if (sensor_ != nullptr && (stretches != stretches_ || key_rate != key_rate_))
     return other_schedule(fmt::format("lidar '{}'", request_.lidar));
-  GLOAM_TRY(schedule_, StepSchedule::make(key_rate, {0, 1}, simulator_.timestep()));
-  stretches_ = stretches;
-  key_rate_ = key_rate;
+  if (sensor_ == nullptr) {
+    GLOAM_TRY(schedule_, StepSchedule::make(key_rate, {0, 1}, simulator_.timestep()));
+    stretches_ = stretches;
+    key_rate_ = key_rate;
+  }
   keys_.resize(static_cast<size_t>(stretches) + 1);
   gathered_ = 0;
   sensor_ = std::move(sensor);
   shared_ = std::move(shared);
   solver_ = std::move(solver);
   return {};
+}
+
+int64_t LiveLidar::complete_at(int64_t from) const {
+  const int64_t key = schedule_.first_at_or_after(from);
+  const int64_t scan = (key + stretches_ - 1) / stretches_;
+  return schedule_.step_of((scan + 1) * stretches_);
 }
 
 // Key k is the instant of step schedule_.step_of(k); scan s lies between the keys s * stretches_

@@ -25,6 +25,8 @@ class LiveLidar final : public LidarStream {
   /// Waits until the queue has ended (the simulation stopped) and every scan was delivered.
   void drain() { thread_.drain(); }
   Status status() const override { return thread_.status(); }
+  int64_t complete_at(int64_t from) const override;
+  void flush() override { thread_.flush(); }
 
  private:
   LiveLidar(Simulator& simulator, SharedRenderers& renderers, const LidarRequest& request,
@@ -41,7 +43,7 @@ class LiveLidar final : public LidarStream {
   std::unique_ptr<LidarSensor> sensor_;
   std::unique_ptr<PoseSolver> solver_;
   Rational key_rate_ = {1, 1};   // [Hz]
-  StepSchedule schedule_;        // schedule of the keys
+  StepSchedule schedule_;        // schedule of the keys; the same in every World that it follows
   int stretches_ = 1;            // stretches of a scan, between its keys
   std::vector<PoseFrame> keys_;  // poses of the scan that is being gathered
   int64_t next_key_ = 0;         // number of the key that is expected

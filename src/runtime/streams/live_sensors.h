@@ -33,6 +33,8 @@ class LiveSensors final : public SensorStream {
                                                    LiveSensorsRequest request,
                                                    SensorCallback on_message);
   int64_t dropped() const override { return thread_.dropped(); }
+  int64_t complete_at(int64_t from) const override { return thread_.complete_at(from); }
+  void flush() override { thread_.flush(); }
   Status status() const override { return thread_.status(); }
   /// Waits until the simulation has stopped and every message was delivered.
   void drain() { thread_.drain(); }

@@ -19,6 +19,8 @@ class LiveSnapshots final : public SnapshotStream {
                                                      std::function<int64_t(int64_t)> due = {},
                                                      int batch = 1);
   int64_t dropped() const override { return thread_.dropped(); }
+  int64_t complete_at(int64_t from) const override { return thread_.complete_at(from); }
+  void flush() override { thread_.flush(); }
   Status status() const override { return thread_.status(); }
 
  private:

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <new>
 #include <utility>
 
@@ -19,11 +20,19 @@ void StreamThread::start(std::shared_ptr<SnapshotQueue> queue, StreamJob job) {
 void StreamThread::run() {
   if (const Status status = take_all(); !status.ok()) end(status.error());
   if (job_.finish) job_.finish();
+  const std::lock_guard lock(mutex_);
+  has_ended_ = true;
+  changed_.notify_all();
 }
 
 Status StreamThread::take_all() {
   try {
-    while (const SnapshotWindow window = job_.next()) GLOAM_TRY_STATUS(job_.take(window));
+    while (const SnapshotWindow window = job_.next()) {
+      GLOAM_TRY_STATUS(job_.take(window));
+      const std::lock_guard lock(mutex_);
+      ++taken_;
+      changed_.notify_all();
+    }
   } catch (const std::bad_alloc&) {
     return Error{
         ErrorKind::kPartial, fmt::format("out of memory for {}", job_.what), {}, job_.memory_hint};
@@ -46,6 +55,15 @@ void StreamThread::end(Error why) {
 void StreamThread::close() {
   if (queue_ != nullptr) queue_->close();
   drain();
+}
+
+void StreamThread::flush() {
+  const int64_t wanted = queue_->handed_out();
+  queue_->flush();
+  std::unique_lock lock(mutex_);
+  changed_.wait(lock, [&] {
+    return taken_ >= std::min(wanted, queue_->handed_out()) || has_ended_ || !status_.ok();
+  });
 }
 
 void StreamThread::drain() {

@@ -2,6 +2,7 @@
 // The thread of one stream: takes Snapshots, or windows of them, out of a queue until the
 // simulation ends, the stream is closed or `take` fails, and says why.
 
+#include <condition_variable>
 #include <functional>
 #include <memory>
 #include <mutex>
@@ -36,6 +37,9 @@ class StreamThread {
   void close();
   /// Waits until the simulation has stopped and all was taken.
   void drain();
+  /// As Stream::flush().
+  void flush();
+  int64_t complete_at(int64_t from) const { return queue_->complete_at(from); }
   /// Snapshots that were lost.
   int64_t dropped() const { return queue_ != nullptr ? queue_->dropped() : 0; }
   /// Error for which it takes no more, if any.
@@ -48,8 +52,11 @@ class StreamThread {
 
   std::shared_ptr<SnapshotQueue> queue_;
   StreamJob job_;
-  mutable std::mutex mutex_;
+  mutable std::mutex mutex_;  // guards what follows
+  std::condition_variable changed_;
   Status status_;
+  int64_t taken_ = 0;  // windows
+  bool has_ended_ = false;
   std::thread thread_;
 };
 

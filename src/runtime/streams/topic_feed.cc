@@ -221,6 +221,10 @@ int64_t TopicFeed::dropped() const {
   return dropped;
 }
 
+void TopicFeed::flush() {
+  for (const auto& stream : streams_) stream->flush();
+}
+
 Status TopicFeed::status() const {
   for (const auto& stream : streams_) GLOAM_TRY_STATUS(stream->status());
   const std::lock_guard lock(mutex_);

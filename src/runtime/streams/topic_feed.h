@@ -25,6 +25,8 @@ class TopicFeed final : public TopicStream {
                                                  TopicCallback on_message, int batch = 1);
   ~TopicFeed() override;
   int64_t dropped() const override;
+  int64_t complete_at(int64_t) const override { return -1; }
+  void flush() override;
   Status status() const override;
 
  private:

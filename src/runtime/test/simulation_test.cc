@@ -102,6 +102,79 @@ TEST(LiveSimulation, TheStepHookSeesTheStateBeforeEveryStep) {
   for (size_t i = 0; i < 3; ++i) EXPECT_NEAR(times[i], 0.002 * static_cast<double>(i), 1e-12);
 }
 
+TEST(LiveSimulation, PhysicsStepsInTheMemoryThatItTells) {
+  const TempFolder folder;
+  const World world = flight(folder);
+  auto simulation = simulate(world);
+  const PhysicsMemory memory = simulation->memory();
+  ASSERT_TRUE(simulation->step(3).ok());
+  EXPECT_NEAR(memory.data->time, 0.006, 1e-12);
+  EXPECT_EQ(memory.data->qpos[0], simulation->latest().state()[1]);
+  ASSERT_TRUE(simulation->recompile(world).ok());
+  ASSERT_TRUE(simulation->step(1).ok());
+  EXPECT_NEAR(memory.data->time, 0.006, 1e-12) << "kept, and no longer stepped";
+  EXPECT_NEAR(simulation->memory().data->time, 0.008, 1e-12);
+}
+
+TEST(LiveSimulation, PhysicsStepsInMemoryThatIsGivenToTheSameHash) {
+  const TempFolder folder;
+  const World world = flight(folder);
+  auto bare = simulate(world);
+  ASSERT_TRUE(bare->step(40).ok());
+  std::vector<std::shared_ptr<mjData>> made;
+  const auto make = [&](const std::shared_ptr<mjModel>& model) {
+    made.emplace_back(mj_makeData(model.get()), [model](mjData* d) { mj_deleteData(d); });
+    return made.back();
+  };
+  auto given = Simulation::create(world, {.make_data = make});
+  ASSERT_TRUE(given.ok()) << given.error().to_string();
+  Simulation& simulation = **given;
+  ASSERT_EQ(made.size(), 1u);
+  EXPECT_EQ(simulation.memory().data, made[0]);
+  ASSERT_TRUE(simulation.step(40).ok());
+  EXPECT_EQ(simulation.latest().hash(), bare->latest().hash());
+  // Live fields change the copy of the model, and a reset takes them back.
+  ASSERT_TRUE(simulation.post({.what = SetLiveField{LiveFieldId::kBodyMass, 1, {5}}}).ok());
+  ASSERT_TRUE(simulation.step(1).ok());
+  EXPECT_EQ(simulation.memory().model->body_mass[1], 5);
+  EXPECT_NE(bare->memory().model->body_mass[1], 5) << "the World's own";
+  ASSERT_TRUE(simulation.post({.what = ResetSim{}}).ok());
+  ASSERT_TRUE(simulation.run_until(40).ok());
+  EXPECT_EQ(simulation.latest().hash(), bare->latest().hash());
+  EXPECT_NE(simulation.memory().model->body_mass[1], 5);
+  EXPECT_EQ(simulation.memory().data, made[0]);
+  // Physics that fails stays in it; another World has its own.
+  ASSERT_TRUE(simulation.set_step_hook([](const mjModel*, mjData* d) { d->qvel[0] = NAN; }).ok());
+  EXPECT_FALSE(simulation.step(1).ok());
+  EXPECT_EQ(simulation.memory().data, made[0]);
+  ASSERT_TRUE(simulation.set_step_hook({}).ok());
+  ASSERT_TRUE(simulation.post({.what = ResetSim{}}).ok());
+  ASSERT_TRUE(simulation.run_until(1).ok());
+  ASSERT_TRUE(simulation.recompile(world).ok());
+  ASSERT_EQ(made.size(), 2u);
+  EXPECT_EQ(simulation.memory().data, made[1]);
+  EXPECT_FALSE(Simulation::create(
+                   world, {.make_data = [](const auto&) { return std::shared_ptr<mjData>(); }})
+                   .ok());
+}
+
+TEST(LiveSimulation, AStreamTellsWhenItsNextMessageIsWhole) {
+  const TempFolder folder;
+  auto simulation = simulate(flight(folder));
+  std::atomic<int> messages{0};
+  auto stream = simulation->open_snapshots({.rate = {100, 1}, .required = true},
+                                           [&](const Snapshot&) { ++messages; });
+  ASSERT_TRUE(stream.ok());
+  EXPECT_EQ((*stream)->complete_at(0), 0);
+  EXPECT_EQ((*stream)->complete_at(1), 5) << "100 Hz of 500";
+  EXPECT_EQ((*stream)->complete_at(6), 10);
+  for (int i = 1; i <= 50; ++i) {
+    ASSERT_TRUE(simulation->run_until((*stream)->complete_at(5 * i - 4)).ok());
+    (*stream)->flush();
+    EXPECT_EQ(messages, i + 1) << "that of step 0 is the first";
+  }
+}
+
 TEST(LiveSimulation, APixelLeadsToTheBodyBehindIt) {
   const TempFolder folder;
   const World world = flight(folder);

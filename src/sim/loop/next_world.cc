@@ -8,11 +8,12 @@ namespace gloam {
 
 Result<NextWorld> make_next_world(const std::shared_ptr<const CompiledWorld>& world, uint64_t seed,
                                   std::optional<double> timestep,
-                                  std::vector<RobotController> controllers) {
+                                  std::vector<RobotController> controllers,
+                                  const DataMaker& make_data) {
   const Rational step_time = exact_rational(timestep.value_or(double{world->model->opt.timestep}));
   NextWorld next;
   GLOAM_TRY(next.scene_commands, scene_schedule(*world, step_time));
-  GLOAM_TRY(next.stepper, Stepper::create(world, seed, timestep));
+  GLOAM_TRY(next.stepper, Stepper::create(world, seed, timestep, make_data));
   for (RobotController& controller : controllers) {
     GLOAM_TRY(ControllerSlot slot, ControllerSlot::make(*world, std::move(controller), step_time));
     next.controllers.push_back(std::move(slot));

@@ -19,6 +19,7 @@ struct NextWorld {
 /// `timestep`: instead of the model's [s]. Takes as long as making a simulation does.
 Result<NextWorld> make_next_world(const std::shared_ptr<const CompiledWorld>& world, uint64_t seed,
                                   std::optional<double> timestep,
-                                  std::vector<RobotController> controllers);
+                                  std::vector<RobotController> controllers,
+                                  const DataMaker& make_data = {});
 
 }  // namespace gloam

@@ -7,14 +7,15 @@
 
 namespace gloam {
 
-Result<std::unique_ptr<Restepper>> Restepper::create(RunRecord record,
-                                                     ControllerMaker controllers) {
-  std::unique_ptr<Restepper> made(new Restepper(std::move(record), std::move(controllers)));
+Result<std::unique_ptr<Restepper>> Restepper::create(RunRecord record, ControllerMaker controllers,
+                                                     DataMaker make_data) {
+  std::unique_ptr<Restepper> made(
+      new Restepper(std::move(record), std::move(controllers), std::move(make_data)));
   const RunRecord& run = made->record_;
   const auto& world = run.chapters.front().world;
   const Rational timestep =
       exact_rational(run.timestep.value_or(double{world->model->opt.timestep}));
-  GLOAM_TRY(NextWorld first, make_next_world(world, run.seed, run.timestep, {}));
+  GLOAM_TRY(NextWorld first, make_next_world(world, run.seed, run.timestep, {}, made->make_data_));
   std::vector<LoggedCommand> replay;
   for (const Command& command : run.commands) replay.push_back({0, command});
   made->loop_ = std::make_unique<SimLoop>(std::move(first.stepper), timestep, made->queue_,
@@ -39,8 +40,8 @@ void Restepper::repeat_inputs() {
 Status Restepper::begin_chapter(const RunRecord::Chapter& chapter) {
   const std::shared_ptr<const CompiledWorld> before = loop_->stepper().shared_world();
   GLOAM_TRY(auto robots, controllers_(chapter.world));
-  GLOAM_TRY(NextWorld next,
-            make_next_world(chapter.world, record_.seed, record_.timestep, std::move(robots)));
+  GLOAM_TRY(NextWorld next, make_next_world(chapter.world, record_.seed, record_.timestep,
+                                            std::move(robots), make_data_));
   const Correspondence same(*before, *chapter.world);
   return loop_->exchange(next, same);
 }

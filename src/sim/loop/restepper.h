@@ -18,7 +18,8 @@ using ControllerMaker = std::function<Result<std::vector<RobotController>>(
 class Restepper {
  public:
   /// Stands at step 0 of the record's first World.
-  static Result<std::unique_ptr<Restepper>> create(RunRecord record, ControllerMaker controllers);
+  static Result<std::unique_ptr<Restepper>> create(RunRecord record, ControllerMaker controllers,
+                                                   DataMaker make_data = {});
 
   /// Goes on to `step`, and stands there as before a recompile at it. Errors: physics fails, a
   /// World of the record cannot go on from the one before it.
@@ -31,13 +32,16 @@ class Restepper {
   const RunRecord& record() const { return record_; }
 
  private:
-  Restepper(RunRecord record, ControllerMaker controllers)
-      : record_(std::move(record)), controllers_(std::move(controllers)) {}
+  Restepper(RunRecord record, ControllerMaker controllers, DataMaker make_data)
+      : record_(std::move(record)),
+        controllers_(std::move(controllers)),
+        make_data_(std::move(make_data)) {}
   Status begin_chapter(const RunRecord::Chapter& chapter);
   void repeat_inputs();
 
   RunRecord record_;
   ControllerMaker controllers_;
+  DataMaker make_data_;
   CommandQueue queue_{2, 0};
   std::unique_ptr<SimLoop> loop_;
   size_t next_chapter_ = 1, next_input_ = 0;

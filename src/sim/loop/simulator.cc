@@ -37,7 +37,8 @@ Result<std::unique_ptr<Simulator>> Simulator::create(std::shared_ptr<const Compi
                  fmt::format("a command queue of {} is not in 2 … 2^20", options.command_capacity)};
   }
   const Rational timestep = exact_rational(dt);
-  GLOAM_TRY(NextWorld first, make_next_world(world, options.seed, options.timestep, {}));
+  GLOAM_TRY(NextWorld first,
+            make_next_world(world, options.seed, options.timestep, {}, options.make_data));
   return std::unique_ptr<Simulator>(new Simulator(
       std::move(first.stepper), timestep, std::move(options), std::move(first.scene_commands)));
 }
@@ -46,6 +47,7 @@ Simulator::Simulator(std::unique_ptr<Stepper> stepper, Rational timestep, Simula
                      std::vector<Command> scene_commands)
     : seed_(options.seed),
       own_timestep_(options.timestep),
+      make_data_(options.make_data),
       replays_(!options.replay.empty()),
       pace_(options.pace),
       commands_(options.command_capacity, options.log_capacity),
@@ -269,7 +271,8 @@ Status Simulator::recompile(std::shared_ptr<const CompiledWorld> world,
   GLOAM_TRY_STATUS(check_timestep(*world));
   if (replays_)
     return Error{ErrorKind::kUsage, "a log that is replayed is of one World: no recompile"};
-  GLOAM_TRY(NextWorld next, make_next_world(world, seed_, own_timestep_, std::move(controllers)));
+  GLOAM_TRY(NextWorld next,
+            make_next_world(world, seed_, own_timestep_, std::move(controllers), make_data_));
   const std::shared_ptr<const CompiledWorld> before = this->world();
   const Correspondence same(*before, *world);
   Status status;
@@ -323,7 +326,7 @@ Status Simulator::restore(const CheckpointData& checkpoint, const ControllerMake
                              wanted, timestep().value())};
   std::unique_ptr<Restepper> again;
   if (checkpoint.copy == nullptr || world != this->world()) {
-    GLOAM_TRY(again, Restepper::create(record, controllers));
+    GLOAM_TRY(again, Restepper::create(record, controllers, make_data_));
     GLOAM_TRY_STATUS(again->run_until(record.step));
     GLOAM_TRY_STATUS(again->begin_chapters());
     if (again->loop().stepper().hash() != record.hash) {
@@ -378,6 +381,12 @@ Snapshot Simulator::latest() {
   Snapshot snapshot;
   call([&] { snapshot = loop_.stepper().snapshot(); });
   return snapshot;
+}
+
+PhysicsMemory Simulator::memory() {
+  PhysicsMemory memory;
+  call([&] { memory = loop_.stepper().memory(); });
+  return memory;
 }
 
 Status Simulator::status() {

@@ -26,6 +26,7 @@ struct SimulatorOptions {
   std::optional<double> timestep = {};  ///< instead of the model's, > 0 [s]
   Pace pace = Pace::kFast;
   double speed = 1;                         ///< for kRealTime, > 0
+  DataMaker make_data = {};                 ///< empty = the simulation makes its own mjData
   int command_capacity = 4096;              ///< Commands in flight between two steps, 2 … 2^20
   int64_t log_capacity = int64_t{1} << 20;  ///< Commands the log keeps until they are taken
   std::vector<LoggedCommand> replay = {};   ///< a log of the same world, applied at its exact steps
@@ -112,6 +113,7 @@ class Simulator {
   Result<std::shared_ptr<SnapshotQueue>> subscribe(const SubscriptionOptions& options);
   /// The present instant; after a failure the last good one.
   Snapshot latest();
+  PhysicsMemory memory();
 
   /// kDiverged (or MuJoCo's own error) once physics has failed, until reset().
   Status status();
@@ -152,7 +154,8 @@ class Simulator {
 
   const uint64_t seed_;
   const std::optional<double> own_timestep_;  // [s]
-  const bool replays_;                        // a log
+  const DataMaker make_data_;
+  const bool replays_;  // a log
   Pace pace_;
   CommandQueue commands_;
   SimLoop loop_;

@@ -20,16 +20,15 @@ constexpr int kFirstSlots = 8;
 }  // namespace
 
 Result<std::unique_ptr<Stepper>> Stepper::create(std::shared_ptr<const CompiledWorld> world,
-                                                 uint64_t seed, std::optional<double> timestep) {
+                                                 uint64_t seed, std::optional<double> timestep,
+                                                 const DataMaker& make_data) {
   std::unique_ptr<Stepper> stepper(new Stepper);
   stepper->world_ = world;
   stepper->seed_ = seed;
   stepper->timestep_ = timestep;
-  stepper->take_model(*world->model);
+  GLOAM_TRY_STATUS(stepper->make_memory(make_data));
   mjModel* model = &stepper->model_;
-  mjData* data = nullptr;
-  GLOAM_TRY_STATUS(guarded([&] { data = mj_makeData(model); }));
-  stepper->data_.reset(data);
+  mjData* data = stepper->data_.get();
   stepper->reader_ = StateReader(*model, *data);
   stepper->inputs_ = std::make_unique<AppliedInputs>(*world, *model);
   stepper->state_.resize(static_cast<size_t>(state_size(*model)));
@@ -45,6 +44,32 @@ Result<std::unique_ptr<Stepper>> Stepper::create(std::shared_ptr<const CompiledW
 }
 
 Stepper::~Stepper() = default;
+
+Status Stepper::make_memory(const DataMaker& make_data) {
+  data_is_given_ = static_cast<bool>(make_data);
+  if (!data_is_given_) {
+    take_model(*world_->model);
+    const mjModel* model = &model_;
+    mjData* data = nullptr;
+    GLOAM_TRY_STATUS(guarded([&] { data = mj_makeData(model); }));
+    data_ = {data, DataDeleter()};
+    return {};
+  }
+  mjModel* copy = nullptr;
+  GLOAM_TRY_STATUS(guarded([&] { copy = mj_copyModel(nullptr, world_->model.get()); }));
+  own_model_ = {copy, ModelDeleter()};
+  take_model(*copy);
+  owns_all_ = true;
+  data_ = make_data(own_model_);
+  if (data_ == nullptr)
+    return Error{ErrorKind::kInput, "there is no memory for physics to step in"};
+  return {};
+}
+
+PhysicsMemory Stepper::memory() const {
+  if (own_model_ != nullptr) return {own_model_, data_};
+  return {{world_, world_->model.get()}, data_};
+}
 
 const Effect* Stepper::find_effect(std::string_view kind) const {
   for (const auto& effect : effects_)
@@ -65,6 +90,19 @@ void Stepper::take_model(const mjModel& model) {
   for (const auto& effect : effects_) effect->follow_model(model_);
 }
 
+// The model as the World has it: without what live fields have changed.
+bool Stepper::take_back_model() {
+  if (!data_is_given_) {
+    take_model(*world_->model);
+    return true;
+  }
+  mjModel* copy = own_model_.get();
+  if (!try_mujoco([&] { copy = mj_copyModel(copy, world_->model.get()); })) return false;
+  take_model(*copy);
+  owns_all_ = true;
+  return true;
+}
+
 // Live fields are written into the arrays: not into those that all simulations of the World share.
 // Masses alone need all arrays, which takes tens of milliseconds where there are large meshes.
 bool Stepper::own_the_field(LiveFieldId field) {
@@ -77,7 +115,7 @@ bool Stepper::own_the_field(LiveFieldId field) {
   mjModel* copy = own_model_.get();
   const bool ok = try_mujoco([&] { copy = mj_copyModel(copy, world_->model.get()); });
   if (!ok || copy == nullptr) return fail({ErrorKind::kInput, mujoco_error_message()});
-  if (own_model_ == nullptr) own_model_.reset(copy);
+  if (own_model_ == nullptr) own_model_ = {copy, ModelDeleter()};
   take_model(*copy);
   owns_all_ = true;
   for (int f = 0; live_ != nullptr && f < kLiveFieldCount; ++f) {  // what changed before
@@ -99,7 +137,7 @@ bool Stepper::reset() {
   failed_ = false;
   if (live_ != nullptr) {
     live_.reset();
-    take_model(*world_->model);
+    if (!take_back_model()) return fail({ErrorKind::kInput, mujoco_error_message()});
   }
   step_ = since_ = 0;
   inputs_->reset();
@@ -294,13 +332,18 @@ bool Stepper::fail(Error error) {
   return false;
 }
 
-// mjData is in an unknown state: make it anew. If even that is refused the state vector and the
-// Snapshot made from it are still good.
+// mjData is in an unknown state: make it anew, or where it was given, clear it. If even that is
+// refused the state vector and the Snapshot made from it are still good.
 void Stepper::restore_last_good_state() {
   const mjModel* model = &model_;
   mjData* data = nullptr;
-  if (!try_mujoco([&] { data = mj_makeData(model); }) || data == nullptr) return;
-  data_.reset(data);
+  if (data_is_given_) {
+    data = data_.get();
+    if (!try_mujoco([&] { mj_resetData(model, data); })) return;
+  } else {
+    if (!try_mujoco([&] { data = mj_makeData(model); }) || data == nullptr) return;
+    data_ = {data, DataDeleter()};
+  }
   reader_ = StateReader(*model, *data);
   std::fill(sensors_.begin(), sensors_.end(), 0.0);
   static_cast<void>(stand_at_state());

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "gloam/command.h"
+#include "gloam/physics_memory.h"
 #include "sim/commands/applied_inputs.h"
 #include "sim/effects/effect.h"
 #include "sim/snapshots/snapshot_pool.h"
@@ -23,7 +24,8 @@ class Stepper {
 
   /// Stands at the initial state. The chain of hashes starts from `seed`.
   static Result<std::unique_ptr<Stepper>> create(std::shared_ptr<const CompiledWorld> world,
-                                                 uint64_t seed, std::optional<double> timestep);
+                                                 uint64_t seed, std::optional<double> timestep,
+                                                 const DataMaker& make_data = {});
 
   /// Back to the initial state, live fields included. False and error() when MuJoCo refuses.
   bool reset();
@@ -67,6 +69,7 @@ class Stepper {
   uint64_t seed() const { return seed_; }
   const mjModel& model() const { return model_; }
   mjData& data() { return *data_; }
+  PhysicsMemory memory() const;
   const CompiledWorld& world() const { return *world_; }
   const std::shared_ptr<const CompiledWorld>& shared_world() const { return world_; }
   SnapshotPool& pool() { return *pool_; }
@@ -90,6 +93,8 @@ class Stepper {
   bool set_live(const std::shared_ptr<const LiveFields>& live);
   bool own_the_field(LiveFieldId field);
   void take_model(const mjModel& model);
+  bool take_back_model();
+  Status make_memory(const DataMaker& make_data);
   void count_diagnostics();
   EffectContext context(int64_t step);
   bool restart();
@@ -103,11 +108,12 @@ class Stepper {
   uint64_t seed_ = 0;
   mjModel model_;  // options of its own; its arrays are the World's until a live field changes
   std::array<std::vector<std::byte>, kLiveFieldCount> own_fields_;  // of model_, where changed
-  ModelPtr own_model_;  // once masses change model_'s arrays are all this one's
+  std::shared_ptr<mjModel> own_model_;  // once masses change model_'s arrays are all this one's
   bool owns_all_ = false;
-  DataPtr data_;
-  StateReader reader_;  // of data_
-  DataPtr scratch_;     // for mj_setConst; made on first use
+  std::shared_ptr<mjData> data_;
+  bool data_is_given_ = false;  // by a DataMaker: it is never exchanged, own_model_ always there
+  StateReader reader_;          // of data_
+  DataPtr scratch_;             // for mj_setConst; made on first use
   std::unique_ptr<AppliedInputs> inputs_;
   EffectList effects_;
   std::unique_ptr<Motion> motion_;  // null = physics

@@ -23,6 +23,11 @@ bool SnapshotQueue::has_room() {
   return !full();
 }
 
+int64_t SnapshotQueue::event_from(int64_t step) const {
+  if (options_.due) return options_.due(step);
+  return schedule_.step_of(schedule_.first_at_or_after(step));
+}
+
 void SnapshotQueue::flush() {
   if (queue_.size() > 0) readers_.raise();
 }
@@ -63,8 +68,14 @@ void SnapshotQueue::publish(SnapshotWindow window) {
   while (full() && queue_.try_pop(oldest)) {
     oldest = {};
     dropped_.fetch_add(1, std::memory_order_relaxed);
+    handed_out_.fetch_sub(1, std::memory_order_release);
   }
-  if (!queue_.try_push(window)) dropped_.fetch_add(1, std::memory_order_relaxed);
+  // Counted before a reader can have it, so that none ever has more than were handed out.
+  handed_out_.fetch_add(1, std::memory_order_release);
+  if (!queue_.try_push(window)) {
+    handed_out_.fetch_sub(1, std::memory_order_release);
+    dropped_.fetch_add(1, std::memory_order_relaxed);
+  }
   if (is_batch()) readers_.raise();
 }
 

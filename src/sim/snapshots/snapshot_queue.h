@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "sim/commands/bounded_queue.h"
+#include "sim/loop/step_schedule.h"
 #include "sim/snapshots/snapshot_window.h"
 
 namespace gloam {
@@ -72,8 +73,22 @@ class SnapshotQueue final : public SnapshotSource {
   /// Snapshots lost since the subscription began because the reader was too slow.
   int64_t dropped() const { return dropped_.load(std::memory_order_relaxed); }
   const SubscriptionOptions& options() const { return options_; }
+  /// The first event at or after `step`, and the step at which the window of one that is then is
+  /// complete.
+  int64_t event_from(int64_t step) const;
+  int64_t complete_at(int64_t from) const { return event_from(from) + window_steps_; }
+  /// Windows that readers have got or will get, since the subscription began.
+  int64_t handed_out() const { return handed_out_.load(std::memory_order_acquire); }
+
+  /// Counts a window that a reader has made itself among those handed out.
+  void count_own() { handed_out_.fetch_add(1, std::memory_order_release); }
 
   // ---- the sim thread's side ----
+  /// Once, before it is published to.
+  void set_schedule(const StepSchedule& schedule, int64_t window_steps) {
+    schedule_ = schedule;
+    window_steps_ = window_steps;
+  }
   /// Counts Snapshots that could not be completed.
   void count_lost(int64_t count) { dropped_.fetch_add(count, std::memory_order_relaxed); }
   /// Whether another window fits. Of a required queue: if not, the sim's Signal is raised once one
@@ -94,7 +109,9 @@ class SnapshotQueue final : public SnapshotSource {
   std::shared_ptr<Signal> sim_signal_;
   std::atomic<bool> closed_{false}, woken_{false};
   std::atomic<bool> is_awaited_{false};  // the sim thread found it full
-  std::atomic<int64_t> dropped_{0};
+  std::atomic<int64_t> dropped_{0}, handed_out_{0};
+  StepSchedule schedule_;
+  int64_t window_steps_ = 0;
   std::chrono::steady_clock::time_point woken_at_{};  // the sim thread's
 };
 

@@ -29,8 +29,8 @@ Result<Subscription> Subscription::make(const SubscriptionOptions& options, Rati
                                                 options.window.value(), kLongestWindow)};
   Subscription subscription;
   subscription.queue_ = std::make_shared<SnapshotQueue>(options, signal);
-  subscription.schedule_ = schedule;
   subscription.keys_ = key_steps(options.window, timestep);
+  subscription.queue_->set_schedule(schedule, subscription.keys_.length());
   // Events may come a step early or late, those of uneven schedules a quarter of a period: a window
   // must end before so many more have begun.
   const int64_t period = schedule.step_of(kMostPending) - schedule.step_of(0);
@@ -45,13 +45,8 @@ Result<Subscription> Subscription::make(const SubscriptionOptions& options, Rati
   return subscription;
 }
 
-int64_t Subscription::event_from(int64_t step) const {
-  if (queue_->options().due) return queue_->options().due(step);
-  return schedule_.step_of(schedule_.first_at_or_after(step));
-}
-
 void Subscription::begin(int64_t from) {
-  event_ = due_ = event_from(from);
+  event_ = due_ = queue_->event_from(from);
   for (Pending& window : pending_) window = {};
   pending_count_ = 0;
 }
@@ -80,7 +75,7 @@ bool Subscription::publish(int64_t step, Stepper& stepper) {
   if (event_ <= step) {
     GLOAM_CHECK(pending_count_ < kMostPending, "windows overlap more than was agreed");
     pending_[static_cast<size_t>(pending_count_++)].first = step;
-    event_ = event_from(event_ + 1);
+    event_ = queue_->event_from(event_ + 1);
   }
   const auto next_key = [&](const Pending& p) { return p.first + p.window.count * keys_.stride; };
   for (int i = 0; i < pending_count_; ++i) {

@@ -40,10 +40,7 @@ class Subscription {
   static constexpr int kMostPending = 5;
 
   Subscription() = default;
-  int64_t event_from(int64_t step) const;  // the first at or after it
-
   std::shared_ptr<SnapshotQueue> queue_;
-  StepSchedule schedule_;
   KeySteps keys_;
   int64_t event_ = 0;  // step of the next event
   int64_t due_ = 0;

@@ -73,6 +73,8 @@ class FakeSimulation::Stream : public CameraStream {
     wake_.notify_one();
   }
   int64_t dropped() const override { return 0; }
+  int64_t complete_at(int64_t from) const override { return from; }
+  void flush() override {}
   Status status() const override { return {}; }
 
  private:

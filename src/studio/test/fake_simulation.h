@@ -38,6 +38,7 @@ class FakeSimulation : public Simulation {
   }
   std::vector<LoggedCommand> take_command_log() override { return {}; }
   Snapshot latest() const override { return {}; }
+  PhysicsMemory memory() override { return {}; }
   SimulationStats stats() const override;
   Status set_step_hook(std::function<void(const mjModel_*, mjData_*)>) override { return {}; }
   Result<std::unique_ptr<CameraStream>> open_camera(const CameraRequest& request,

@@ -1,0 +1,52 @@
+"""Gloam: a robotics simulator. Physics is MuJoCo's, light is path-traced, and every sensor sees the same instant.
+
+    import gloam
+    sim = gloam.load("house.toml", seed=7)
+    dog, cam = sim.robots["go1"], sim.cameras["head"]
+    while sim.time < 20:
+        dog.command(vx=0.6)
+        frame = sim.step_until(cam)
+"""
+from __future__ import annotations
+
+import os as _os
+
+_built = _os.environ.get("GLOAM_BUILT")  # folder of the compiled module in a source tree
+if _built:
+    __path__.append(_built)
+
+from gloam import _core  # noqa: E402
+
+from .batch import check, convert, evaluate, render, report, run  # noqa: E402
+from .cameras import Camera, Frame, Lidar, Scan, Sensor, Subscription  # noqa: E402
+from .elements import Actuator, Body, Joint, Pose, Robot, yaw_quaternion  # noqa: E402
+from .errors import (  # noqa: E402
+    ClosedError,
+    DivergedError,
+    Error,
+    ForkedError,
+    InputError,
+    IoError,
+    NotFoundError,
+    PartialError,
+    StoppedError,
+    UnsupportedError,
+    UsageError,
+)
+from .logs import Log, RunReport, Verification, replay  # noqa: E402
+from .scene import Option, Scene, describe  # noqa: E402
+from .simulation import Checkpoint, Simulation, load  # noqa: E402
+from .world import World  # noqa: E402
+
+__version__: str = _core.version()
+home = _core.home
+configuration = _core.configuration
+set_thread_count = _core.set_thread_count
+set_log_level = _core.set_log_level
+
+__all__ = [
+    "Actuator", "Body", "Camera", "Checkpoint", "ClosedError", "DivergedError", "Error", "ForkedError", "Frame", "InputError", "IoError", "Joint",
+    "Lidar", "Log", "NotFoundError", "Option", "PartialError", "Pose", "Robot", "RunReport", "Scan", "Scene", "Sensor", "Simulation",
+    "StoppedError", "Subscription", "UnsupportedError", "UsageError", "Verification", "World", "check", "configuration", "convert", "describe",
+    "evaluate", "home", "load", "render", "replay", "report", "run", "set_log_level", "set_thread_count", "yaw_quaternion",
+]

@@ -1,0 +1,96 @@
+"""Batch jobs: recorded runs, stills, meshes, trajectories, reports."""
+from __future__ import annotations
+
+import os
+import tempfile
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from gloam import _core
+
+from .cameras import Frame
+from .elements import Pose
+from .errors import PartialError
+from .logs import Log, RunReport
+from .progress import ProgressLike, watch
+from .scene import Scene, as_scene
+from .world import World
+
+PathLike = str | os.PathLike[str]
+
+
+def run(source: Any, out: PathLike, *, settings: Mapping[str, Any] | None = None, outputs: Sequence[str] | None = None,
+        overwrite: bool = False, progress: ProgressLike = None, **request: Any) -> RunReport:
+    """Runs a scene for its duration and records what it asks for into the folder `out`, as `gloam run` does.
+
+    `request`: cameras, width, height, rate [Hz], duration [s], seed, timestep [s], mcap (a log's path), topics.
+    """
+    world = _compiled(source, settings, outputs, progress)
+    options = {"out": Path(out), "overwrite": overwrite, **request}
+    if "mcap" in options:
+        options["mcap"] = Path(options["mcap"])
+    with watch(progress, "running") as told:
+        report = RunReport.of(_core.run_and_record(world._world, options, told))
+    if report.error:
+        raise PartialError(report.error)
+    return report
+
+
+def render(source: Any, time: float = 0.0, camera: str = "free", *, outputs: Sequence[str] = ("rgb",), settings: Mapping[str, Any] | None = None,
+           width: int = 0, height: int = 0, pose: Pose | None = None, progress: ProgressLike = None, **options: Any) -> Frame:
+    """A still of one camera at a time [s], as `gloam render` makes it. `options`: tier, spp, denoise, device …"""
+    world = _compiled(source, settings, None, progress)
+    request = {"camera": camera, "outputs": list(outputs), "width": width, "height": height, "pose": pose, **options}
+    with watch(progress, "rendering") as told:
+        return Frame(_core.render_stills(world._world, float(time), [request], told)[0])
+
+
+def _compiled(source: Any, settings: Mapping[str, Any] | None, outputs: Sequence[str] | None, progress: ProgressLike) -> World:
+    if isinstance(source, World):
+        return source
+    scene: Scene = as_scene(source).copy()
+    if settings:
+        scene.update(settings)
+    if outputs is not None:
+        _core.set_record_outputs(scene._scene, list(outputs))
+    return scene.compile(progress)
+
+
+def convert(mesh: PathLike, progress: ProgressLike = None) -> dict[str, Any]:
+    """Colliders, volume, mass of a mesh as an [[object]] gets them, and how near they are to it."""
+    with watch(progress, f"converting {Path(mesh).name}") as told:
+        return dict(_core.convert_object(Path(mesh), told))
+
+
+def check(model: PathLike) -> dict[str, Any]:
+    """Compares a model or scene with what stock MuJoCo makes of it, and its export with itself: "passed", and the fields that differ."""
+    with tempfile.TemporaryDirectory() as folder:
+        return dict(_core.check_model(Path(model), Path(folder)))
+
+
+def _trajectory(source: Any, topic: str | None) -> Any:
+    if isinstance(source, Log):
+        return _core.Trajectory.make(*source.trajectory(topic or ""), source.file.name)
+    if isinstance(source, tuple):
+        return _core.Trajectory.make(source[0], source[1])
+    path = Path(source)
+    if path.suffix == ".mcap":
+        return _trajectory(Log(path), topic)
+    return _core.Trajectory.read(path)
+
+
+def evaluate(reference: Any, estimate: Any, alignment: str = "none", *, reference_topic: str | None = None, estimate_topic: str | None = None,
+             max_difference: float = 0.01, delta: float = 1.0) -> dict[str, Any]:
+    """ATE and RPE of two trajectories as evo defines them: files (TUM, KITTI, EuRoC), logs with a topic, or (times, poses (n, 7)).
+
+    `alignment`: none, origin, se3, sim3, scale; `delta` in frames. Returns "ate", "ate_angle", "rpe", "rpe_angle": rmse, mean, median, std, min,
+    max, sse, values.
+    """
+    return dict(_core.evaluate(_trajectory(reference, reference_topic), _trajectory(estimate, estimate_topic), alignment, max_difference, delta))
+
+
+def report(runs: Sequence[PathLike], out: PathLike, *, title: str = "", overwrite: bool = False) -> list[str]:
+    """One HTML page of results folders side by side. Returns what could not be read of them."""
+    _, _, left_out = _core.write_report([Path(r) for r in runs], Path(out), overwrite, title)
+    return list(left_out)

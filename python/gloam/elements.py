@@ -1,0 +1,384 @@
+"""Robots, joints, bodies, actuators and sensors of a simulation, by name."""
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Generic, TypeVar
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from gloam import _core
+
+from .errors import NotFoundError, UsageError
+
+if TYPE_CHECKING:
+    from .simulation import Simulation
+
+Doubles = NDArray[np.float64]
+T = TypeVar("T")
+
+
+class Named(Mapping[str, T], Generic[T]):
+    """Elements by name; they are made when they are asked for."""
+
+    def __init__(self, what: str, names: Callable[[], Sequence[str]], make: Callable[[str], T]) -> None:
+        self._what = what
+        self._names = names
+        self._make = make
+        self._made: dict[str, T] = {}
+
+    def __getitem__(self, name: str) -> T:
+        if name not in self._made:
+            if not isinstance(name, str):
+                raise TypeError(f"a {self._what} is asked for by its name, not by {name!r}")
+            names = list(self._names())
+            if name not in names:
+                raise NotFoundError(f"there is no {self._what} '{name}'", hint=_core.suggest_name(name, names))
+            self._made[name] = self._make(name)
+        return self._made[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._names())
+
+    def __len__(self) -> int:
+        return len(self._names())
+
+    def _forget(self) -> None:
+        self._made.clear()
+
+    def __repr__(self) -> str:
+        return f"<{len(self)} of {self._what}: {', '.join(self)}>"
+
+
+@dataclass(frozen=True)
+class Pose:
+    """Pose of a frame B in a frame A: `p` position [m] (3,), `q` unit quaternion wxyz (4,)."""
+
+    p: Doubles
+    q: Doubles
+
+    @property
+    def R(self) -> Doubles:
+        """Rotation matrix (3, 3)."""
+        w, x, y, z = self.q
+        return np.array([[1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
+                         [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
+                         [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)]])
+
+    @property
+    def matrix(self) -> Doubles:
+        """Homogeneous matrix (4, 4)."""
+        made = np.eye(4)
+        made[:3, :3] = self.R
+        made[:3, 3] = self.p
+        return made
+
+    @property
+    def yaw(self) -> float:
+        """Heading about z [rad]."""
+        w, x, y, z = self.q
+        return float(np.arctan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z)))
+
+
+def yaw_quaternion(yaw: float) -> Doubles:
+    """Quaternion wxyz of a turn about z [rad]."""
+    return np.array([np.cos(yaw / 2), 0.0, 0.0, np.sin(yaw / 2)])
+
+
+class Element:
+    """Something of the model with a name. After a recompile it is that of the same name, or raises NotFoundError."""
+
+    def __init__(self, sim: Simulation, name: str) -> None:
+        self._sim = sim
+        self.name = name
+        self._generation = -1
+        self._handle: Any = None
+
+    def _find(self) -> Any:
+        raise NotImplementedError
+
+    def _now(self) -> Any:
+        """The handle in the World that runs."""
+        generation = self._sim._look()
+        if generation != self._generation:
+            self._handle = self._find()
+            self._generation = generation
+            self._changed()
+        return self._handle
+
+    def _changed(self) -> None:
+        """Looks up what depends on the World."""
+
+    def __repr__(self) -> str:
+        return f"<gloam.{type(self).__name__} '{self.name}'>"
+
+
+class Joint(Element):
+    """A joint. `qpos` and `qvel` are live views of the state, writable while the simulation is paused."""
+
+    def _find(self) -> Any:
+        return self._sim._core_world.find_joint(self.name)
+
+    def _changed(self) -> None:
+        memory, i = self._sim.memory, self._handle.id
+        kind = int(memory.array("jnt_type")[i])
+        position, velocity = int(memory.array("jnt_qposadr")[i]), int(memory.array("jnt_dofadr")[i])
+        nq, nv = ((7, 6), (4, 3), (1, 1), (1, 1))[kind]
+        self._qpos: Doubles = memory.array("qpos")[position:position + nq]
+        self._qvel: Doubles = memory.array("qvel")[velocity:velocity + nv]
+
+    @property
+    def qpos(self) -> Doubles:
+        """(1,) of a hinge [rad] or slide [m], (4,) wxyz of a ball, (7,) xyz, wxyz of a free joint."""
+        self._now()
+        return self._qpos
+
+    @property
+    def qvel(self) -> Doubles:
+        """(1,), (3,) or (6,) [rad/s, m/s]."""
+        self._now()
+        return self._qvel
+
+    @property
+    def position(self) -> float:
+        """First number of qpos."""
+        return float(self.qpos[0])
+
+    @property
+    def velocity(self) -> float:
+        return float(self.qvel[0])
+
+    def set(self, qpos: ArrayLike | None = None, qvel: ArrayLike | None = None) -> None:
+        """Puts it somewhere else at the next step, as a Command."""
+        self._sim._core.set_joint_state(self._now(), qpos, qvel)
+
+    def set_goal(self, position: float) -> None:
+        """Position [rad, m] that the robot's controller brings it to ("joint_position" obeys)."""
+        self._sim._core.set_joint_goal(self._now(), float(position), lease=self._sim._lease_of_joint(self.name))
+
+
+class Body(Element):
+    """A body. Pose and velocities are of the present instant, in world axes."""
+
+    def _find(self) -> Any:
+        return self._sim._core_world.find_body(self.name)
+
+    def _state(self) -> Any:
+        return self._sim._solver.body(self._sim._core, self._now())
+
+    @property
+    def pose(self) -> Pose:
+        """X_WB"""
+        return Pose(*self._state()[0])
+
+    @property
+    def velocity(self) -> Doubles:
+        """Velocity of its origin [m/s], (3,)."""
+        return np.asarray(self._state()[1])
+
+    @property
+    def angular_velocity(self) -> Doubles:
+        """[rad/s], (3,)"""
+        return np.asarray(self._state()[2])
+
+    def push(self, force: ArrayLike = (0, 0, 0), torque: ArrayLike = (0, 0, 0), duration: float | None = None) -> None:
+        """Force [N] and torque [N m] at its centre of mass, world axes, until changed or for `duration` [s]."""
+        sim, handle = self._sim, self._now()
+        sim._core.set_wrench(handle, force, torque)
+        if duration is not None:
+            sim._core.set_wrench(handle, (0, 0, 0), (0, 0, 0), step=sim.step_count + max(1, round(duration / sim.timestep)))
+
+    def add_velocity(self, velocity: ArrayLike) -> None:
+        """Adds to the velocity of a free body [m/s], (3,)."""
+        self._sim._core.add_velocity(self._now(), velocity)
+
+    def set_mocap(self, pose: Pose | tuple[ArrayLike, ArrayLike]) -> None:
+        """Pose X_WB of a mocap body."""
+        self._sim._core.set_mocap(self._now(), pose)
+
+
+class Actuator(Element):
+    """An actuator, in its own unit."""
+
+    def _find(self) -> Any:
+        return self._sim._core_world.find_actuator(self.name)
+
+    @property
+    def control(self) -> float:
+        return float(self._sim.memory.array("ctrl")[self._now().id])
+
+    @control.setter
+    def control(self, value: float) -> None:
+        if value is None:
+            raise TypeError("None is no control")
+        self._sim._core.set_control(self._now(), float(value), lease=self._sim._lease_of_actuator(self.name))
+
+    @property
+    def force(self) -> float:
+        """[N, N m]"""
+        return float(self._sim._solver.force(self._sim._core, self._now()))
+
+
+class Robot(Element):
+    """A robot: its root, joints and actuators, and what drives it."""
+
+    def _find(self) -> Any:
+        for robot in self._sim._core_world.robots():
+            if robot["name"] == self.name:
+                self._info = robot
+                return robot["robot"]
+        raise NotFoundError(f"there is no robot '{self.name}'", hint=_core.suggest_name(self.name, list(self._sim.robots)))
+
+    def _changed(self) -> None:
+        names = self._sim._world.info
+        self._joint_names = [names["joints"][j.id] for j in self._info["joints"]]
+        self._actuator_names = [names["actuators"][a.id] for a in self._info["actuators"]]
+        memory = self._sim.memory
+        kinds = memory.array("jnt_type")
+        single = [j.id for j in self._info["joints"] if kinds[j.id] >= 2]
+        self._qpos = _Picked(memory, "qpos", [int(memory.array("jnt_qposadr")[j]) for j in single])
+        self._qvel = _Picked(memory, "qvel", [int(memory.array("jnt_dofadr")[j]) for j in single])
+        self._single_names = [names["joints"][j] for j in single]
+        self._ctrl = _Picked(memory, "ctrl", [a.id for a in self._info["actuators"]])
+
+    @property
+    def joint_names(self) -> list[str]:
+        """Full names of its hinge and slide joints, in the order of `qpos`."""
+        self._now()
+        return list(self._single_names)
+
+    @property
+    def actuator_names(self) -> list[str]:
+        """Full names, in the order of `controls`."""
+        self._now()
+        return list(self._actuator_names)
+
+    @property
+    def joints(self) -> dict[str, Joint]:
+        """All its joints, also by their names without the robot's prefix."""
+        self._now()
+        return _short({n: self._sim.joints[n] for n in self._joint_names if n}, self.name)
+
+    @property
+    def actuators(self) -> dict[str, Actuator]:
+        self._now()
+        return _short({n: self._sim.actuators[n] for n in self._actuator_names if n}, self.name)
+
+    @property
+    def root(self) -> Body:
+        self._now()
+        return self._sim.bodies[self._sim._world.info["bodies"][self._info["root"].id]]
+
+    @property
+    def pose(self) -> Pose:
+        """X_WB of its root."""
+        self._now()
+        return Pose(*self._sim._solver.body(self._sim._core, self._info["root"])[0])
+
+    @property
+    def velocity(self) -> Doubles:
+        """Velocity of its root's origin, world axes [m/s], (3,)."""
+        self._now()
+        return np.asarray(self._sim._solver.body(self._sim._core, self._info["root"])[1])
+
+    @property
+    def angular_velocity(self) -> Doubles:
+        """[rad/s], world axes, (3,)"""
+        self._now()
+        return np.asarray(self._sim._solver.body(self._sim._core, self._info["root"])[2])
+
+    @property
+    def qpos(self) -> Doubles:
+        """Positions of its hinge and slide joints [rad, m], (n,); live where they stand side by side in the state."""
+        self._now()
+        return self._qpos.array()
+
+    @property
+    def qvel(self) -> Doubles:
+        """[rad/s, m/s], (n,)"""
+        self._now()
+        return self._qvel.array()
+
+    @property
+    def controls(self) -> Doubles:
+        """Controls of its actuators, each in its own unit, (n,). Assigned, they apply from the next step on."""
+        self._now()
+        return self._ctrl.array().copy()
+
+    @controls.setter
+    def controls(self, values: ArrayLike) -> None:
+        self._sim._core.set_controls(self._now(), values, lease=self._sim._leases.get(self.name))
+
+    def command(self, vx: float = 0.0, vy: float = 0.0, yaw_rate: float = 0.0) -> None:
+        """Velocity goal of its controller in its heading frame [m/s, m/s, rad/s]; stays until changed."""
+        self._sim._core.set_velocity_goal(self._now(), (vx, vy, yaw_rate), lease=self._sim._leases.get(self.name))
+
+    def set_joint_goals(self, goals: Mapping[str, float]) -> None:
+        """Positions [rad, m] by joint names, with or without the robot's prefix, for its controller."""
+        joints = self.joints
+        for name, position in goals.items():
+            if name not in joints:
+                raise NotFoundError(f"robot '{self.name}' has no joint '{name}'", hint=_core.suggest_name(name, list(joints)))
+            joints[name].set_goal(position)
+
+    def set_joints(self, qpos: ArrayLike | None = None, qvel: ArrayLike | None = None) -> None:
+        """Puts its hinge and slide joints somewhere else at the next step, (n,) each."""
+        self._now()
+        n = len(self._single_names)
+        positions = None if qpos is None else _sized(qpos, n, "qpos")
+        velocities = None if qvel is None else _sized(qvel, n, "qvel")
+        for i, name in enumerate(self._single_names):
+            self._sim.joints[name].set(None if positions is None else positions[i:i + 1],
+                                       None if velocities is None else velocities[i:i + 1])
+
+    def place(self, position: ArrayLike, yaw: float = 0.0, quat: ArrayLike | None = None) -> None:
+        """Puts a robot with a free root at `position` [m] at the next step, turned by `yaw` [rad] or to `quat` (wxyz), at rest."""
+        self._now()
+        memory = self._sim.memory
+        root = self._info["root"].id
+        joint = int(memory.array("body_jntadr")[root])
+        if joint < 0 or memory.array("jnt_type")[joint] != 0:
+            raise UsageError(f"robot '{self.name}' stands fixed: it has no free root")
+        name = self._sim._world.info["joints"][joint]
+        turn = yaw_quaternion(yaw) if quat is None else _sized(quat, 4, "quat")
+        handle = next(j for j in self._info["joints"] if j.id == joint)
+        del name
+        self._sim._core.set_joint_state(handle, np.concatenate([_sized(position, 3, "position"), turn]), np.zeros(6))
+
+    @contextmanager
+    def claim(self) -> Iterator[Robot]:
+        """While it lasts, its controls and goals obey this simulation object's caller alone."""
+        lease = self._sim._core.claim(self._now())
+        self._sim._leases[self.name] = lease
+        try:
+            yield self
+        finally:
+            del self._sim._leases[self.name]
+
+
+class _Picked:
+    """Elements of a live array: a view where they stand side by side, else a copy."""
+
+    def __init__(self, memory: Any, name: str, places: list[int]) -> None:
+        self._array: Doubles = memory.array(name)
+        self._places = np.array(places, dtype=np.intp)
+        n = len(places)
+        is_row = n > 0 and places == list(range(places[0], places[0] + n))
+        self._view: Doubles | None = self._array[places[0]:places[0] + n] if is_row else None
+
+    def array(self) -> Doubles:
+        return self._array[self._places] if self._view is None else self._view
+
+
+def _sized(values: ArrayLike, n: int, what: str) -> Doubles:
+    array = np.asarray(values, dtype=np.float64).reshape(-1)
+    if len(array) != n:
+        raise UsageError(f"{what}: {len(array)} numbers are given, {n} are expected")
+    return array
+
+
+def _short(elements: dict[str, T], robot: str) -> dict[str, T]:
+    short = {name.removeprefix(robot + "/"): element for name, element in elements.items()}
+    return {**short, **elements}

@@ -1,0 +1,68 @@
+"""Exceptions of Gloam: what is wrong, where in which file, and what to do about it."""
+from __future__ import annotations
+
+
+class Error(Exception):
+    """Base of all exceptions of Gloam.
+
+    message: one sentence; file, line, column: place in the user's files ("" and 0 where there is none); hint: remedy, may be "".
+    """
+
+    def __init__(self, message: str, file: str = "", line: int = 0, column: int = 0, hint: str = "") -> None:
+        super().__init__(message)
+        self.message = message
+        self.file = file
+        self.line = line
+        self.column = column
+        self.hint = hint
+
+    def __str__(self) -> str:
+        place = ":".join(str(part) for part in (self.file, self.line, self.column) if part)
+        return (f"{place}: " if place else "") + self.message + (f" ({self.hint})" if self.hint else "")
+
+    def __reduce__(self) -> tuple[type[Error], tuple[str, str, int, int, str]]:
+        return type(self), (self.message, self.file, self.line, self.column, self.hint)
+
+
+class InputError(Error, ValueError):
+    """A file or value that the user gave is wrong."""
+
+
+class NotFoundError(InputError, KeyError):
+    """There is nothing of that name; the hint tells the nearest one."""
+
+    __str__ = Error.__str__
+
+
+class IoError(Error, OSError):
+    """Reading or writing failed: permission, a full disk, a port in use."""
+
+    __str__ = Error.__str__
+
+
+class UsageError(Error, ValueError):
+    """The call is wrong."""
+
+
+class PartialError(Error):
+    """It stopped early; what was recorded is whole and readable."""
+
+
+class DivergedError(Error, ArithmeticError):
+    """Physics left the finite numbers; the last good state is kept, reset() goes on."""
+
+
+class UnsupportedError(Error, NotImplementedError):
+    """Valid input that this build cannot do."""
+
+
+class StoppedError(Error):
+    """It was stopped by request."""
+
+
+class ClosedError(Error, RuntimeError):
+    """The simulation or stream was closed."""
+
+
+class ForkedError(Error, RuntimeError):
+    """The object belongs to another process."""

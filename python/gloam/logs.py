@@ -1,0 +1,175 @@
+"""Logs: verified, replayed, rendered under another sky, exported."""
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Literal
+
+from gloam import _core
+
+from ._toml import to_text
+from .errors import PartialError, UsageError
+from .progress import ProgressLike, watch
+from .simulation import Simulation
+from .world import World
+
+PathLike = str | os.PathLike[str]
+Motion = Literal["stepped", "poses", "new_run"]
+
+
+@dataclass(frozen=True)
+class Verification:
+    """Outcome of stepping a log again: all states and hashes were compared."""
+
+    steps: int
+    runs: int
+    states: int
+    differing_steps: int  #: from the first different state on
+    run: int
+    equal_step: int
+    step: int
+    where: str  #: "joint 'go1/FL_hip': position differs by 1e-12"
+    notes: tuple[str, ...]  #: what could not be verified, and why
+
+    @property
+    def is_equal(self) -> bool:
+        return self.differing_steps == 0
+
+
+@dataclass(frozen=True)
+class RunReport:
+    """Report of a recorded run or replay. `error`: why it ended early, "" if it did not."""
+
+    out: Path
+    steps: int
+    sim_time: float  #: [s]
+    wall_time: float  #: [s]
+    hash: int
+    frames: int
+    written: tuple[str, ...]
+    results: dict[str, float]
+    notes: tuple[str, ...]
+    error: str
+
+    @classmethod
+    def of(cls, report: Mapping[str, Any]) -> RunReport:
+        made = dict(report)
+        made["written"] = tuple(made["written"])
+        made["notes"] = tuple(made["notes"])
+        return cls(**made)
+
+
+class Log:
+    """A log (MCAP), of Gloam's or any writer. `folder`: where the scene's files are now; None = where they were."""
+
+    def __init__(self, file: PathLike, folder: PathLike | None = None) -> None:
+        self.file = Path(file)
+        self._folder = Path(folder) if folder is not None else Path()
+        self.info: dict[str, Any] = dict(_core.describe_log(self.file))
+
+    @property
+    def topics(self) -> list[dict[str, Any]]:
+        return list(self.info["topics"])
+
+    @property
+    def duration(self) -> float:
+        """[s]"""
+        return float(self.info["duration"])
+
+    def verify(self, progress: ProgressLike = None) -> Verification:
+        """Steps its runs again from the scene and Commands. Raises InputError: a stranger's log, files that changed (which)."""
+        with watch(progress, f"verifying {self.file.name}") as told:
+            result = dict(_core.verify_log(self.file, self._folder, told))
+        result["notes"] = tuple(result["notes"])
+        return Verification(**result)
+
+    def replay(self, out: PathLike, settings: Mapping[str, Any] | None = None, *, motion: Motion = "stepped", run: int = 0,
+               overlays: Sequence[PathLike] = (), outputs: Sequence[str] = (), overwrite: bool = False, progress: ProgressLike = None,
+               **request: Any) -> RunReport:
+        """Records a run again into the folder `out`, seen otherwise: `settings` are options of the scene, `overlays` scene files laid over it.
+
+        `request`: cameras, width, height, rate [Hz], duration [s]. Raises InputError: a setting that would change how bodies move.
+        """
+        options = self._options(settings, motion, run, overlays, outputs)
+        options["request"] = {"out": Path(out), "overwrite": overwrite, **request}
+        with watch(progress, f"replaying {self.file.name}") as told:
+            report = RunReport.of(_core.replay_log(self.file, options, told))
+        if report.error:
+            raise PartialError(report.error)
+        return report
+
+    def render(self, path: PathLike, settings: Mapping[str, Any] | None = None, *, camera: str | None = None, overwrite: bool = False,
+               progress: ProgressLike = None, **request: Any) -> Path:
+        """A video (.mp4) of one camera of the run, seen under other `settings`: log.render("night.mp4", {"light.lux": 5}).
+
+        `camera`: None = the first one that the replay records.
+        """
+        import shutil
+        import tempfile
+
+        path = Path(path)
+        if path.suffix != ".mp4":
+            raise UsageError(f"{path.name}: a video ends in .mp4", hint="replay() writes all else into a folder")
+        if path.exists() and not overwrite:
+            raise UsageError(f"{path} is there already", hint="overwrite=True replaces it")
+        with tempfile.TemporaryDirectory(dir=path.absolute().parent, prefix=".gloam-") as folder:
+            if camera is not None:
+                request["cameras"] = [camera]
+            report = self.replay(Path(folder) / "replay", settings, outputs=["video"], progress=progress, **request)
+            videos = sorted(Path(report.out).rglob("*.mp4"))
+            if not videos:
+                raise UsageError(f"{self.file.name}: no camera is recorded", hint="name one: camera=…")
+            shutil.move(videos[0], path)
+        return path
+
+    def variants(self, randomize: PathLike, count: int, out: PathLike, *, first_seed: int = 1, settings: Mapping[str, Any] | None = None,
+                 motion: Motion = "stepped", outputs: Sequence[str] = (), overwrite: bool = False, progress: ProgressLike = None,
+                 **request: Any) -> list[dict[str, Any]]:
+        """Replays that differ in what [[randomize]]s of a file draw, in OUT/0000, 0001 …; called again it goes on where it was stopped."""
+        options = self._options(settings, motion, 0, (), outputs)
+        options["request"] = {"out": Path(out), "overwrite": overwrite, **request}
+        with watch(progress, f"variants of {self.file.name}") as told:
+            return list(_core.replay_variants(self.file, options, Path(randomize), count, first_seed, told))
+
+    def at(self, time: float, run: int = 0, seed: int = 1) -> Simulation:
+        """A simulation that stands at an instant of the run [s], to be gone on from."""
+        checkpoint = _core.log_checkpoint(self.file, self._folder, run, float(time))
+        sim = Simulation(World(_core.checkpoint_world(checkpoint)), checkpoint.seed)
+        from .simulation import Checkpoint
+
+        sim.restore(Checkpoint(checkpoint))
+        return sim
+
+    def export(self, topic: str, path: PathLike, format: str | None = None) -> int:
+        """Messages of a topic as csv, parquet, png (a folder) or mp4; None = by the path's suffix. Returns how many."""
+        if format is None:
+            format = Path(path).suffix.removeprefix(".") or "png"
+        return int(_core.export_topic(self.file, topic, Path(path), format))
+
+    def trajectory(self, topic: str) -> tuple[Any, Any]:
+        """Times [s], (n,), and poses (n, 7) x, y, z, qw, qx, qy, qz of a topic of poses."""
+        times, poses = _core.export_trajectory(self.file, topic)
+        return times, poses
+
+    def recover(self, path: PathLike) -> dict[str, Any]:
+        """Writes what is whole of a damaged log into a new file."""
+        whole, messages, lost, damage = _core.recover_log(self.file, Path(path))
+        return {"is_whole": whole, "messages": messages, "messages_lost": lost, "damage": list(damage)}
+
+    def _options(self, settings: Mapping[str, Any] | None, motion: str, run: int, overlays: Sequence[PathLike],
+                 outputs: Sequence[str]) -> dict[str, Any]:
+        return {"folder": self._folder, "run": run, "motion": motion, "overlays": [Path(o) for o in overlays], "outputs": list(outputs),
+                "settings": [(path, to_text(value, path)) for path, value in (settings or {}).items()]}
+
+    def __iter__(self) -> Iterator[str]:
+        return (topic["name"] for topic in self.topics)
+
+    def __repr__(self) -> str:
+        return f"<gloam.Log '{self.file.name}', {self.duration:.3f} s, {len(self.topics)} topics>"
+
+
+def replay(file: PathLike, folder: PathLike | None = None) -> Log:
+    """Opens a log to verify, replay, render and export it."""
+    return Log(file, folder)

@@ -1,0 +1,30 @@
+"""Present values of metrics, from the topic /metrics."""
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from gloam import _core
+
+if TYPE_CHECKING:
+    from .simulation import Simulation
+
+
+class PresentMetrics:
+    """The last message of /metrics, decoded."""
+
+    def __init__(self, sim: Simulation) -> None:
+        self._stream = _core.open_topics(sim._core, ["/metrics"], True, None)
+        self._values: dict[str, float] = {}
+
+    def values(self) -> dict[str, float]:
+        self._stream.flush()
+        last: Any = None
+        while (message := self._stream.pop()) is not None:
+            last = message
+        if last is not None:
+            self._values = _read(last.decode())
+        return self._values
+
+
+def _read(message: dict[str, Any]) -> dict[str, float]:
+    return {name: float(value) for name, value in zip(message["names"], message["values"], strict=True)}

@@ -1,0 +1,59 @@
+"""Memory of a simulation as the package `mujoco` sees it: MjModel and MjData on the same arrays, without a copy."""
+from __future__ import annotations
+
+import importlib.util
+import sys
+import weakref
+from typing import Any
+
+from gloam import _core
+
+
+def _fits(version: str) -> bool:
+    """Structs are the same within a minor version of MuJoCo."""
+    return version.split(".")[:2] == _core.mujoco_version().split(".")[:2]
+
+
+class MujocoMemory:
+    """Makes the mjData that a simulation steps in by the package, which then has it as its own."""
+
+    def __init__(self, mujoco: Any) -> None:
+        self._mujoco = mujoco
+        self._models: weakref.WeakValueDictionary[int, Any] = weakref.WeakValueDictionary()  # by the address of their mjData
+        self._datas: weakref.WeakValueDictionary[int, Any] = weakref.WeakValueDictionary()
+
+    @classmethod
+    def for_this_process(cls) -> MujocoMemory | None:
+        """None where the package is missing or of another version."""
+        if "mujoco" not in sys.modules and importlib.util.find_spec("mujoco") is None:
+            return None
+        try:
+            import mujoco
+        except ImportError:
+            return None
+        if not _fits(mujoco.__version__) or not hasattr(mujoco.MjModel, "_from_model_ptr"):
+            return None
+        return cls(mujoco)
+
+    @staticmethod
+    def required(memory: MujocoMemory | None) -> MujocoMemory:
+        if memory is not None:
+            return memory
+        wanted = ".".join(_core.mujoco_version().split(".")[:2])
+        raise ImportError(f"sim.model and sim.data need the package mujoco of version {wanted}.x, imported or installed before the "
+                          f"simulation is made: pip install 'mujoco~={wanted}.0'; sim.memory.array(…) works without it")
+
+    def make(self, keeper: Any) -> tuple[int, Any]:
+        """(address of a new mjData, object that keeps it), for a model of the simulation's, whose arrays `keeper` keeps."""
+        model = self._mujoco.MjModel._from_model_ptr(keeper.borrow())
+        weakref.finalize(model, lambda _: None, keeper).atexit = False  # arrays of the model outlive the simulation
+        data = self._mujoco.MjData(model)
+        self._models[data._address] = model
+        self._datas[data._address] = data
+        return data._address, data
+
+    def data(self, memory: Any) -> Any:
+        return self._datas[memory.data_address]
+
+    def model(self, memory: Any) -> Any:
+        return self._models[memory.data_address]

@@ -1,0 +1,204 @@
+"""Scenes: what a user writes, from files, text, dicts or code."""
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+from typing import Any, Self
+
+from gloam import _core
+
+from . import _toml
+from .errors import Error, NotFoundError, UsageError
+from .progress import ProgressLike, watch
+from .world import World
+
+PathLike = str | os.PathLike[str]
+
+
+@dataclass(frozen=True)
+class Option:
+    """One option of a scene. `value` is None where it is not given; `low` and `high` are infinite where there is no limit."""
+
+    path: str
+    value: Any
+    unit: str
+    low: float
+    high: float
+    choices: tuple[str, ...]
+    doc: str
+
+
+@cache
+def _schema() -> dict[str, Any]:
+    schema: dict[str, Any] = json.loads(_core.scene_schema())
+    return schema
+
+
+def describe(path: str) -> str:
+    """What an option means, as its place in the documentation says: describe("weather.visibility"). "" where it is unknown."""
+    node: Any = _schema()
+    root = node
+    for part in path.split("."):
+        node = _resolve(node, root)
+        inner = node.get("properties", {})
+        if part in inner:
+            node = inner[part]
+            resolved = _resolve(node, root)
+            if resolved.get("type") == "array" and "items" in resolved:
+                items = _resolve(resolved["items"], root)
+                if "properties" in items:
+                    node = items
+        # Else the part is the name of an element of a list: it leads nowhere.
+    return str(node.get("description", ""))
+
+
+def _resolve(node: Any, root: Any) -> Any:
+    while isinstance(node, dict) and "$ref" in node:
+        target: Any = root
+        for key in node["$ref"].removeprefix("#/").split("/"):
+            target = target[key]
+        node = {**target, **{k: v for k, v in node.items() if k != "$ref"}}
+    for choice in node.get("oneOf", node.get("anyOf", [])) if isinstance(node, dict) else []:
+        if "properties" in choice or "items" in choice:
+            return {**choice, "description": node.get("description", "")}
+    return node
+
+
+class Scene:
+    """A scene as written, editable until it is compiled. Options are reached by their paths, as `gloam run --set` takes them:
+
+        scene = gloam.Scene("house.toml")
+        scene["weather.visibility"] = 8
+
+    `path`: a scene (.toml) or a bare model (.xml, .urdf). `root`: no file outside this folder is read; `strict`: it is the model's own.
+    Raises InputError with file and line.
+    """
+
+    def __init__(self, path: PathLike, root: PathLike = "", strict: bool = False) -> None:
+        self._scene = _core.Scene.load(Path(path), Path(root) if root else Path(), strict)
+
+    @classmethod
+    def _of(cls, scene: _core.Scene) -> Self:
+        made = cls.__new__(cls)
+        made._scene = scene
+        return made
+
+    @classmethod
+    def parse(cls, text: str, folder: PathLike = ".", root: PathLike = "", strict: bool = False) -> Self:
+        """A scene from the text of a scene file, as if that lay in `folder`."""
+        return cls._of(_core.Scene.parse(text, Path(folder), Path(root) if root else Path(), strict))
+
+    @classmethod
+    def from_dict(cls, tables: Mapping[str, Any], folder: PathLike = ".") -> Self:
+        """A scene from nested dicts; lists of dicts are what [[…]] is in a file: {"robot": [{"name": "go", "file": …}]}."""
+        return cls.parse(_toml.table_text(tables), folder)
+
+    @property
+    def name(self) -> str:
+        return str(self._scene.name)
+
+    @property
+    def file(self) -> Path:
+        """File that it was read from; empty of scenes made in code."""
+        return Path(self._scene.file)
+
+    @property
+    def duration(self) -> float:
+        """sim.duration [s]."""
+        return float(self._scene.duration)
+
+    def copy(self) -> Self:
+        return self._of(self._scene.copy())
+
+    def __getitem__(self, path: str) -> Any:
+        """Value of an option; None where it is not given."""
+        try:
+            return _toml.from_text(self._scene.get(path))
+        except NotFoundError:
+            raise
+        except Error as error:
+            if any(option["path"] == path for option in self._scene.options()):
+                return None  # it is not given
+            raise NotFoundError(error.message, error.file, error.line, error.column, error.hint) from None
+
+    def __setitem__(self, path: str, value: Any) -> None:
+        self._scene.set(path, _toml.to_text(value, path))
+
+    def update(self, settings: Mapping[str, Any]) -> None:
+        """Sets all of these options, or none."""
+        changed = self._scene.copy()
+        for path, value in settings.items():
+            changed.set(path, _toml.to_text(value, path))
+        self._scene = changed
+
+    def options(self) -> list[Option]:
+        """All options of the tables that stand in the scene."""
+        return [Option(o["path"], _toml.from_text(o["value"]), o["unit"], o["low"], o["high"], tuple(o["choices"]), describe(o["path"]))
+                for o in self._scene.options()]
+
+    def __iter__(self) -> Iterator[str]:
+        return (option["path"] for option in self._scene.options())
+
+    def __contains__(self, path: object) -> bool:
+        try:
+            self._scene.get(str(path))
+        except Error:
+            return False
+        return True
+
+    def add(self, table: str, **options: Any) -> str:
+        """One more [[table]], or the single [table]: scene.add("camera", name="front", position=(2, 0, 1)). Returns its path, "camera.front"."""
+        name = options.get("name")
+        if name is not None and f"{table}.{name}.name" in self:
+            raise UsageError(f"there is a {table} '{name}' already", hint=f'set its options: scene["{table}.{name}.…"]')
+        value: Any = [options] if _is_list(table) else options
+        self._scene = self._scene.overlay_text(_toml.table_text({table: value}), f"add('{table}')")
+        return f"{table}.{name}" if name is not None else table
+
+    def overlay(self, change: PathLike | Mapping[str, Any]) -> Self:
+        """A scene changed by a second scene file, or by tables as of from_dict: lists change elements of the same name and add others."""
+        if isinstance(change, Mapping):
+            return self._of(self._scene.overlay_text(_toml.table_text(change), "overlay"))
+        text = os.fspath(change)
+        if "\n" in text:
+            return self._of(self._scene.overlay_text(text, "overlay"))
+        return self._of(self._scene.overlay_file(Path(text)))
+
+    def to_toml(self) -> str:
+        """The options that differ from their defaults, as a scene file."""
+        return str(self._scene.to_toml())
+
+    def compile(self, progress: ProgressLike = None, keyframe: str = "") -> World:
+        """Compiles it. `keyframe`: name or number, of a bare model, that it starts from. Raises InputError with file and line."""
+        with watch(progress, f"compiling {self.name}") as told:
+            return World(_core.World.compile(self._scene, told, keyframe))
+
+    def __repr__(self) -> str:
+        return f"<gloam.Scene '{self.name}'>"
+
+
+def _is_list(table: str) -> bool:
+    node: Any = _schema()
+    root = node
+    for part in table.split("."):
+        node = _resolve(node, root).get("properties", {}).get(part)
+        if node is None:
+            raise NotFoundError(f"a scene has no table '{table}'", hint=_core.suggest_name(table, list(root.get("properties", {}))))
+    return _resolve(node, root).get("type") == "array" or "items" in _resolve(node, root)
+
+
+def as_scene(source: Any) -> Scene:
+    """A Scene of a path, a Scene, a dict of tables or the text of a scene file."""
+    if isinstance(source, Scene):
+        return source
+    if isinstance(source, Mapping):
+        return Scene.from_dict(source)
+    if source is None:
+        raise TypeError("None is no scene: a path, a Scene, a World or a dict is expected")
+    if isinstance(source, str) and "\n" in source:
+        return Scene.parse(source)
+    return Scene(source)

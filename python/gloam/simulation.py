@@ -1,0 +1,348 @@
+"""Simulations: worlds that run."""
+from __future__ import annotations
+
+import atexit
+import os
+import weakref
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any, Literal
+
+import numpy as np
+
+from gloam import _core
+
+from .cameras import Camera, Frame, Lidar, Scan, Sensor, Source, Subscription
+from .elements import Actuator, Body, Joint, Named, Robot
+from .errors import UsageError
+from .mujoco_memory import MujocoMemory
+from .progress import ProgressLike
+from .scene import Scene, as_scene
+from .world import World
+
+Pace = Literal["lockstep", "fast", "realtime"]
+_alive: weakref.WeakSet[Simulation] = weakref.WeakSet()
+
+
+class Checkpoint:
+    """An instant to go back to or branch from. `hash`: of the state; a restored simulation has the same."""
+
+    def __init__(self, checkpoint: Any) -> None:
+        self._checkpoint = checkpoint
+        self.time: float = checkpoint.time
+        self.step: int = checkpoint.step
+        self.seed: int = checkpoint.seed
+        self.hash: int = checkpoint.hash
+
+    def __repr__(self) -> str:
+        return f"<gloam.Checkpoint at {self.time:.4f} s>"
+
+
+class Simulation:
+    """A World that runs. It stands still until it is stepped or told to run().
+
+    `pace`: of run(): "lockstep" and "fast" go as fast as they can, "realtime" by the wall clock times `speed`. `timestep` [s]: None = the model's.
+    What is written into live arrays between two steps counts as input of the next step, after controllers, and is in logs.
+    """
+
+    def __init__(self, world: World, seed: int = 1, timestep: float | None = None, pace: Pace = "lockstep", speed: float = 1.0) -> None:
+        if not isinstance(world, World):
+            raise TypeError(f"a World is expected, not {world!r}; gloam.load() takes files and scenes")
+        if isinstance(seed, bool) or not isinstance(seed, (int, np.integer)) or not 0 <= seed < 2**64:
+            raise UsageError(f"a seed is an integer in 0 … 2^64 - 1, not {seed!r}")
+        self._mujoco = MujocoMemory.for_this_process()
+        make = None if self._mujoco is None else self._mujoco.make
+        self._core = _core.Run.create(world._world, int(seed), 0.0 if timestep is None else float(timestep), pace, float(speed), make)
+        self.seed = int(seed)
+        self._world = world
+        self._core_world = world._world
+        self._memory: Any = None
+        self._generation = 0
+        self._solver = _core.Solver()
+        self._renderer: Any = None
+        self._leases: dict[str, Any] = {}
+        self._log: Any = None
+        self._metrics: Any = None
+        self.joints: Named[Joint] = Named("joint", lambda: self._world.joints, lambda n: Joint(self, n))
+        self.bodies: Named[Body] = Named("body", lambda: self._world.bodies, lambda n: Body(self, n))
+        self.actuators: Named[Actuator] = Named("actuator", lambda: self._world.actuators, lambda n: Actuator(self, n))
+        self.robots: Named[Robot] = Named("robot", lambda: self._world.robots, lambda n: Robot(self, n))
+        self.sensors: Named[Sensor] = Named("sensor", lambda: self._world.sensors, lambda n: Sensor(self, n))
+        self.cameras: Named[Camera] = Named("camera", lambda: [*self._world.cameras, "free"], lambda n: Camera(self, n))
+        self.lidars: Named[Lidar] = Named("lidar", lambda: self._world.lidars, lambda n: Lidar(self, n))
+        _alive.add(self)
+
+    # ---- the present instant ----
+    @property
+    def time(self) -> float:
+        """Simulation time [s]."""
+        return float(self._core.time)
+
+    @property
+    def step_count(self) -> int:
+        """Steps since the reset."""
+        return int(self._core.step_count)
+
+    @property
+    def hash(self) -> int:
+        """Hash of the state, chained over all steps."""
+        return int(self._core.hash)
+
+    @property
+    def timestep(self) -> float:
+        """[s]"""
+        num, den = self._core.step_rate
+        return float(den / num)
+
+    @property
+    def stats(self) -> dict[str, Any]:
+        return dict(self._core.stats)
+
+    @property
+    def paused(self) -> bool:
+        return bool(self._core.paused)
+
+    @property
+    def world(self) -> World:
+        return self._world
+
+    @property
+    def scene(self) -> Scene:
+        """The Scene of the World that runs; a copy."""
+        return self._world.scene
+
+    @property
+    def memory(self) -> Any:
+        """MuJoCo's memory: memory.array("qpos") is a live array of any field of mjData (writable while paused) or mjModel (read only)."""
+        self._look()
+        return self._memory
+
+    def _look(self) -> int:
+        """Number of the memory that physics steps in: another one after a recompile, a restore of another run, a failure."""
+        generation: int = self._core.generation
+        if generation != self._generation:
+            self._memory = self._core.memory
+            self._generation = generation
+        return generation
+
+    @property
+    def model(self) -> Any:
+        """mujoco.MjModel of the same arrays as the model that is stepped, for reading. ImportError without the package mujoco."""
+        return MujocoMemory.required(self._mujoco).model(self.memory)
+
+    @property
+    def data(self) -> Any:
+        """mujoco.MjData that physics steps in; what is written while paused is input of the next step."""
+        return MujocoMemory.required(self._mujoco).data(self.memory)
+
+    def contacts(self) -> list[dict[str, Any]]:
+        """Contacts of the present instant: geoms (names), position, normal, distance, force on the second one [N], torque."""
+        names = self._world.info["geoms"]
+        made = list(self._solver.contacts(self._core))
+        for contact in made:
+            contact["geoms"] = tuple(names[g] if 0 <= g < len(names) else "" for g in contact["geoms"])
+        return made
+
+    def value(self, field: str, element: str = "") -> Any:
+        """A field of mjData or mjModel of the present instant after a forward pass: value("xfrc_applied", "go1/trunk")."""
+        return self._solver.value(self._core, field, element)
+
+    def labels(self) -> list[dict[str, Any]]:
+        """One row for each drawn geom: part, geom, body, instance, instance_name, semantic, semantic_name."""
+        return list(self._core.labels())
+
+    @property
+    def metrics(self) -> dict[str, float]:
+        """Present values of all metrics that the scene has (docs/metrics.md); they count from the first time they are asked for."""
+        from .metrics import PresentMetrics
+
+        if self._metrics is None:
+            self._metrics = PresentMetrics(self)
+        return dict(self._metrics.values())
+
+    # ---- time ----
+    def step(self, n: int = 1) -> None:
+        """Takes n steps. Raises DivergedError: physics left the finite numbers."""
+        self._core.step(n)
+
+    def run_until(self, time: float | None = None, *, step: int | None = None) -> None:
+        """Steps up to a time [s], to the first step at or after it, or to a step."""
+        if (time is None) == (step is None):
+            raise UsageError("run_until() takes a time or a step")
+        if step is None:
+            num, den = self._core.step_rate
+            if not np.isfinite(time):  # type: ignore[arg-type]
+                raise UsageError(f"a time of {time} s is not finite")
+            step = int(np.ceil(float(time) * num / den - 1e-6))  # type: ignore[arg-type]
+        self._core.run_until(step)
+
+    def step_until(self, source: Source) -> Any:
+        """Steps until the next message of a camera, LiDAR or sensor reaches a reader, and returns that. The first may be of this instant."""
+        if not isinstance(source, Source) or source._sim is not self:
+            raise TypeError(f"a camera, LiDAR or sensor of this simulation is expected, not {source!r}")
+        return source._next()
+
+    def run(self, pace: Pace | None = None, speed: float = 1.0) -> None:
+        """Runs in the background until pause()."""
+        if pace is not None:
+            self._core.set_pace(pace, speed)
+        self._core.resume()
+
+    def pause(self) -> None:
+        self._core.pause()
+
+    def reset(self) -> None:
+        """Back to the initial state; time and frames count from 0 again."""
+        self._core.reset()
+        self._metrics = None
+
+    def checkpoint(self) -> Checkpoint:
+        return Checkpoint(self._core.checkpoint())
+
+    def restore(self, checkpoint: Checkpoint) -> None:
+        """Goes on from a checkpoint of this or another simulation of the same scene and timestep."""
+        self._core.restore(checkpoint._checkpoint)
+        self._take_world(World(self._core.world))
+
+    # ---- changes ----
+    def set(self, path: str | Mapping[str, Any], value: Any = None, progress: ProgressLike = None) -> None:
+        """Changes options of the scene and goes on at this instant, as recompile() does: set("weather.visibility", 8), or set({…})."""
+        settings = path if isinstance(path, Mapping) else {path: value}
+        scene = self.scene
+        scene.update(settings)
+        self.recompile(scene, progress)
+
+    def recompile(self, source: Scene | World, progress: ProgressLike = None) -> None:
+        """Goes on in another World: what has the same name keeps its state."""
+        world = source if isinstance(source, World) else as_scene(source).compile(progress)
+        self._core.recompile(world._world)
+        self._take_world(world)
+
+    def _take_world(self, world: World) -> None:
+        self._world = world
+        self._core_world = world._world
+        self._renderer = None
+        self._metrics = None
+
+    def set_live_field(self, field: str, values: Any, first: int = 0) -> None:
+        """Changes a field of the model that may change while it runs: "gravity", "light_intensity", "geom_color" … (docs/library.md)."""
+        self._core.set_live_field(field, first, values)
+
+    def on_step(self, hook: Callable[[Any], None] | None) -> None:
+        """Calls hook(memory) before every step, on the physics thread, which waits for Python: slow. None = no longer."""
+        if hook is None:
+            self._core.set_hook(None)
+            return
+        memory = self.memory
+        self._core.set_hook(lambda: hook(memory))
+
+    # ---- topics ----
+    def topics(self) -> list[dict[str, Any]]:
+        return list(self._core.topics())
+
+    def subscribe(self, topics: Sequence[str], callback: Callable[[Any], None] | None = None, required: bool = True) -> Subscription:
+        """Opens topics by name, * standing for any text: for message in subscription: message.decode()."""
+        names = [topics] if isinstance(topics, str) else list(topics)
+        return Subscription(_core.open_topics(self._core, names, required, callback))
+
+    def publish(self, topic: str, message: Mapping[str, Any] | bytes) -> None:
+        """A message to an input topic: its fields as a dict, left out ones 0, or CDR."""
+        if not isinstance(message, bytes):
+            kinds = {t["name"]: t["type"] for t in self.topics() if t["is_input"]}
+            if topic not in kinds:
+                raise UsageError(f"no topic '{topic}' is heard", hint=_core.suggest_name(topic, list(kinds)))
+            message = _core.encode_message(kinds[topic], dict(message))
+        self._core.publish(topic, message)
+
+    # ---- records, pictures, pages ----
+    @contextmanager
+    def record(self, file: str | os.PathLike[str], topics: Sequence[str] | None = None, *, overwrite: bool = False, **options: Any) -> Iterator[Any]:
+        """Writes a log (MCAP) from now on to the end of the block. `options`: required, durable, embed, state_rate, width, height."""
+        if topics is not None:
+            options["topics"] = list(topics)
+        log = _core.start_log(self._core, Path(file), {"overwrite": overwrite, **options})
+        self._log = log
+        try:
+            yield log
+        finally:
+            self._log = None
+            if not self._core.is_closed:
+                log.finish()
+
+    @contextmanager
+    def view(self, port: int = 0, camera: str = "free", **render: Any) -> Iterator[Any]:
+        """Serves the live page on this machine: .url. 0 = any free port."""
+        server = _core.start_view(self._core, port, camera, render)
+        try:
+            yield server
+        finally:
+            server.stop()
+
+    def _painter(self) -> Any:
+        if self._renderer is None:
+            self._renderer = _core.Painter(self._core_world)
+        return self._renderer
+
+    def _lease_of_joint(self, name: str) -> Any:
+        return self._lease_where(lambda robot: name in robot.joints)
+
+    def _lease_of_actuator(self, name: str) -> Any:
+        return self._lease_where(lambda robot: name in robot.actuators)
+
+    def _lease_where(self, has: Callable[[Robot], bool]) -> Any:
+        for robot, lease in self._leases.items():
+            if has(self.robots[robot]):
+                return lease
+        return None
+
+    # ---- end ----
+    def close(self) -> None:
+        """Ends it and its streams. Arrays stay readable."""
+        if not self._core.is_closed:
+            if self._log is not None:
+                self._log.finish()
+            self._core.close()
+
+    def __enter__(self) -> Simulation:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    def __repr__(self) -> str:
+        if self._core.is_closed:
+            return "<gloam.Simulation, closed>"
+        return f"<gloam.Simulation of '{self.scene.name}' at {self.time:.4f} s>"
+
+
+@atexit.register
+def _close_all() -> None:
+    for sim in list(_alive):
+        sim.close()
+
+
+def load(source: Any, seed: int | None = None, timestep: float | None = None, pace: Pace = "lockstep", speed: float = 1.0, *,
+         progress: ProgressLike = None, settings: Mapping[str, Any] | None = None) -> Simulation:
+    """A simulation of a scene file, a model (MJCF, URDF), a Scene, a dict of tables or a World. `settings`: options to change before.
+
+    `seed`: None = the scene's own. It is that of everything random, of [[randomize]] and generators too.
+    """
+    if isinstance(source, World):
+        if settings:
+            raise UsageError("a World is compiled: its options cannot be changed", hint="load its scene: world.scene")
+        return Simulation(source, 1 if seed is None else seed, timestep, pace, speed)
+    scene = as_scene(source).copy()
+    if settings:
+        scene.update(settings)
+    is_model = bool(os.fspath(scene._scene.bare_model) not in ("", "."))
+    if seed is not None and not is_model:
+        scene["sim.seed"] = seed
+    if timestep is None and not is_model:
+        timestep = scene["sim.timestep"]
+    if seed is None:
+        seed = 1 if is_model else scene["sim.seed"]
+    return Simulation(scene.compile(progress), seed, timestep, pace, speed)
+
+
+__all__ = ["Checkpoint", "Frame", "Scan", "Simulation", "load"]

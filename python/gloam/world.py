@@ -1,0 +1,99 @@
+"""Worlds: compiled scenes."""
+from __future__ import annotations
+
+import os
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from gloam import _core
+
+if TYPE_CHECKING:
+    from .scene import Scene
+
+
+class World:
+    """What a Scene compiles to. It never changes and is shared by everything that runs it."""
+
+    def __init__(self, world: _core.World) -> None:
+        self._world = world
+
+    @cached_property
+    def info(self) -> dict[str, Any]:
+        """Names of all elements, numbers of the model, options that [[randomize]] drew ("drawn")."""
+        return dict(self._world.info())
+
+    @cached_property
+    def _robots(self) -> list[dict[str, Any]]:
+        return list(self._world.robots())
+
+    @property
+    def robots(self) -> list[str]:
+        return [robot["name"] for robot in self._robots]
+
+    @property
+    def bodies(self) -> list[str]:
+        return list(self.info["bodies"])
+
+    @property
+    def joints(self) -> list[str]:
+        return list(self.info["joints"])
+
+    @property
+    def actuators(self) -> list[str]:
+        return list(self.info["actuators"])
+
+    @property
+    def cameras(self) -> list[str]:
+        return list(self.info["cameras"])
+
+    @property
+    def sensors(self) -> list[str]:
+        """Sensors of MuJoCo's model."""
+        return list(self.info["sensors"])
+
+    @property
+    def lidars(self) -> list[str]:
+        return [stream["name"] for stream in self.streams() if stream["kind"] == "lidar"]
+
+    @property
+    def timestep(self) -> float:
+        """[s]"""
+        return float(self.info["timestep"])
+
+    @property
+    def notes(self) -> list[str]:
+        """What is odd about the scene and taken all the same, and where."""
+        return list(self._world.notes())
+
+    @property
+    def unsupported(self) -> list[str]:
+        """What is in the files and is not simulated or drawn, and where."""
+        return list(self._world.unsupported())
+
+    @property
+    def scene(self) -> Scene:
+        """The Scene that it was compiled from; changed, it compiles again."""
+        from .scene import Scene
+
+        return Scene._of(self._world.written_scene())
+
+    def topics(self) -> list[dict[str, Any]]:
+        """Topics of a simulation of it: name, type, rate [Hz], …"""
+        return list(self._world.topics())
+
+    def metrics(self) -> list[dict[str, Any]]:
+        return list(self._world.metrics())
+
+    def inputs(self) -> list[dict[str, Any]]:
+        return list(self._world.inputs())
+
+    def streams(self) -> list[dict[str, Any]]:
+        return list(self._world.streams())
+
+    def export_mjcf(self, folder: str | os.PathLike[str]) -> list[str]:
+        """Writes the whole level as one MJCF with its assets into FOLDER/scene.xml. Returns what MJCF cannot hold."""
+        return list(self._world.export_mjcf(Path(folder)))
+
+    def __repr__(self) -> str:
+        return f"<gloam.World: {len(self.robots)} robots, {len(self.bodies)} bodies>"

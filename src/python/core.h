@@ -1,0 +1,128 @@
+#pragma once
+// Core of the Python module: errors as exceptions, calls that wait, arrays without copies.
+
+#include <nanobind/nanobind.h>
+#include <nanobind/ndarray.h>
+#include <nanobind/stl/filesystem.h>
+#include <nanobind/stl/function.h>
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/pair.h>
+#include <nanobind/stl/shared_ptr.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/string_view.h>
+#include <nanobind/stl/unique_ptr.h>
+#include <nanobind/stl/vector.h>
+
+#include <atomic>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "gloam/result.h"
+#include "gloam/types.h"
+#include "gloam/world.h"
+
+namespace nb = nanobind;
+
+namespace gloam::python {
+
+/// Raises the exception of gloam.errors that an Error is.
+[[noreturn]] void raise(const Error& error);
+/// The same by the name of its class: "ClosedError".
+[[noreturn]] void raise(const char* type, const std::string& message, const std::string& hint = {});
+
+inline void check(const Status& status) {
+  if (!status.ok()) raise(status.error());
+}
+template <class T>
+T take(Result<T> result) {
+  if (!result.ok()) raise(result.error());
+  return std::move(result).value();
+}
+
+/// Runs `job` on another thread while this one looks after signals: a Ctrl-C calls `stop` and is
+/// raised once the job has ended. For what may take longer than a tenth of a second.
+void wait_for(const std::function<void()>& job, const std::function<void()>& stop);
+
+/// A job's result, with the interpreter free for other threads meanwhile.
+template <class F>
+auto without_gil(F&& job) {
+  const nb::gil_scoped_release released;
+  return job();
+}
+/// The same, stopped by Ctrl-C.
+template <class F>
+auto interruptible(F&& job, const std::function<void()>& stop) {
+  std::optional<decltype(job())> result;
+  wait_for([&] { result.emplace(job()); }, stop);
+  return std::move(*result);
+}
+
+/// A ProgressCallback that calls a Python function, or none. Its exception stops the job and is
+/// raised by rethrow().
+class PythonProgress {
+ public:
+  explicit PythonProgress(nb::object callable) : callable_(std::move(callable)) {}
+  ProgressCallback callback();
+  void stop() { stopped_ = true; }
+  void rethrow();
+
+ private:
+  bool tell(const Progress& progress);
+
+  nb::object callable_;
+  std::atomic<bool> stopped_{false};
+  std::mutex mutex_;
+  std::unique_ptr<nb::python_error> error_;
+};
+
+/// Runs a job that takes a ProgressCallback: with progress told to Python, stopped by Ctrl-C.
+template <class F>
+auto with_progress(nb::object callable, F&& job) {
+  PythonProgress progress(std::move(callable));
+  auto result = interruptible([&] { return job(progress.callback()); }, [&] { progress.stop(); });
+  progress.rethrow();
+  return take(std::move(result));
+}
+
+using Doubles = nb::ndarray<const double, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
+
+/// Numbers of any sequence or array of Python's, as doubles. Raises: no numbers.
+std::vector<double> doubles(nb::handle numbers);
+/// As many, else a ValueError that names `what`.
+std::vector<double> doubles(nb::handle numbers, size_t count, const char* what);
+Vec3 vec3(nb::handle numbers, const char* what);
+/// (position (3), quaternion wxyz (4)), as Pose in Python; or a Pose, which has .p and .q.
+Pose pose(nb::handle value);
+nb::tuple pose_tuple(const Pose& X);
+
+/// A NumPy array over memory that `owner` keeps.
+template <class T>
+nb::object array_over(const T* data, std::initializer_list<size_t> shape, nb::handle owner) {
+  return nb::cast(
+      nb::ndarray<nb::numpy, T>(const_cast<T*>(data), shape.size(), shape.begin(), owner));
+}
+/// A NumPy array that owns its numbers.
+template <class T>
+nb::object new_array(std::vector<T> values, std::initializer_list<size_t> shape) {
+  auto* kept = new std::vector<T>(std::move(values));
+  const nb::capsule owner(kept, [](void* p) noexcept { delete static_cast<std::vector<T>*>(p); });
+  return nb::cast(nb::ndarray<nb::numpy, T>(kept->data(), shape.size(), shape.begin(), owner));
+}
+
+// One function for each part of the module.
+void bind_scene(nb::module_& m);
+void bind_world(nb::module_& m);
+void bind_simulation(nb::module_& m);
+void bind_streams(nb::module_& m);
+void bind_frames(nb::module_& m);
+void bind_logs(nb::module_& m);
+void bind_runs(nb::module_& m);
+void bind_tools(nb::module_& m);
+
+}  // namespace gloam::python

@@ -1,0 +1,57 @@
+#include "inbox.h"
+
+namespace gloam::python {
+
+void Inbox::close() {
+  if (stream_ == nullptr) return;
+  std::unique_ptr<Stream> stream = std::move(stream_);
+  const nb::gil_scoped_release released;  // its last callback may wait for the interpreter
+  stream.reset();
+}
+
+Stream& Inbox::stream() {
+  if (stream_ == nullptr) raise("ClosedError", "the stream is closed");
+  return *stream_;
+}
+
+void Inbox::put(Waiting message) {
+  if (callback_.is_none()) {
+    const std::lock_guard lock(mutex_);
+    waiting_.push_back(std::move(message));
+    if (static_cast<int>(waiting_.size()) <= capacity_) return;
+    waiting_.pop_front();
+    ++lost_;
+    return;
+  }
+  const nb::gil_scoped_acquire acquired;
+  try {
+    callback_(message.make());
+  } catch (nb::python_error& error) {
+    const std::lock_guard lock(mutex_);
+    if (!error_) error_ = std::make_unique<nb::python_error>(std::move(error));
+  }
+}
+
+std::optional<Waiting> Inbox::pop() {
+  const std::lock_guard lock(mutex_);
+  if (waiting_.empty()) return {};
+  std::optional<Waiting> first = std::move(waiting_.front());
+  waiting_.pop_front();
+  return first;
+}
+
+void Inbox::clear() {
+  const std::lock_guard lock(mutex_);
+  waiting_.clear();
+}
+
+void Inbox::rethrow() {
+  std::unique_ptr<nb::python_error> error;
+  {
+    const std::lock_guard lock(mutex_);
+    error.swap(error_);
+  }
+  if (error != nullptr) throw std::move(*error);
+}
+
+}  // namespace gloam::python

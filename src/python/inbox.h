@@ -1,0 +1,58 @@
+#pragma once
+// Inbox: an open stream and its messages that wait for Python.
+
+#include <deque>
+#include <functional>
+#include <memory>
+#include <mutex>
+
+#include "core.h"
+#include "gloam/stream.h"
+
+namespace gloam::python {
+
+/// A message as Python gets it, made when it is asked for.
+struct Waiting {
+  int64_t step = 0;     ///< step from which the next message may begin
+  double delivery = 0;  ///< [s]
+  std::function<nb::object()> make;
+};
+
+class Inbox {
+ public:
+  /// `callback`: called for each message on the stream's thread, in place of keeping it; or none.
+  Inbox(int capacity, nb::object callback) : capacity_(capacity), callback_(std::move(callback)) {}
+  ~Inbox() { close(); }
+
+  void open(std::unique_ptr<Stream> stream, int64_t from) {
+    stream_ = std::move(stream);
+    next_from_ = from;
+  }
+  void close();
+  Stream& stream();
+  bool is_open() const { return stream_ != nullptr; }
+
+  // ---- threads of the stream ----
+  void put(Waiting message);
+
+  // ---- Python ----
+  std::optional<Waiting> pop();
+  void clear();
+  int64_t lost() const { return lost_; }
+  void rethrow();
+
+  int64_t next_from() const { return next_from_; }
+  void set_next_from(int64_t step) { next_from_ = step; }
+
+ private:
+  const int capacity_;
+  nb::object callback_;
+  std::unique_ptr<Stream> stream_;
+  std::mutex mutex_;
+  std::deque<Waiting> waiting_;
+  std::unique_ptr<nb::python_error> error_;  // of the callback
+  std::atomic<int64_t> lost_{0};
+  int64_t next_from_ = 0;
+};
+
+}  // namespace gloam::python

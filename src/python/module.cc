@@ -1,0 +1,32 @@
+// gloam._core: include/gloam/ for Python. What users write is python/gloam/.
+
+#include "core.h"
+#include "gloam/program.h"
+
+NB_MODULE(_core, m) {
+  using namespace gloam::python;
+  m.doc() = "Gloam's C++ API; use the package gloam, which is made on it.";
+  m.def("version", &gloam::version, "Version of the library, \"0.1.0\".");
+  m.def("configuration", &gloam::configuration,
+        "Compiler, instruction set, build type and libraries: what determinism is relative to.");
+  m.def("home", [] { return take(gloam::gloam_home()); }, "Folder that holds assets/.");
+  m.def("suggest_name", [](const std::string& word, const std::vector<std::string>& candidates) {
+    return gloam::suggest_name(word, candidates);
+  });
+  m.def("set_thread_count", &gloam::set_thread_count, nb::arg("n"),
+        "Threads for rendering and loading; 0 = all processors. Results do not depend on it.");
+  m.def("set_log_level", [](const std::string& level) {
+    const std::vector<std::string> names = {"debug", "info", "warning", "error", "off"};
+    for (size_t i = 0; i < names.size(); ++i)
+      if (names[i] == level) return gloam::set_log_level(static_cast<gloam::LogLevel>(i));
+    raise("UsageError", "there is no log level '" + level + "'", gloam::suggest_name(level, names));
+  });
+  bind_scene(m);
+  bind_world(m);
+  bind_frames(m);
+  bind_streams(m);
+  bind_simulation(m);
+  bind_logs(m);
+  bind_runs(m);
+  bind_tools(m);
+}

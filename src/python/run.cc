@@ -1,0 +1,277 @@
+#include "run.h"
+
+#include <mujoco/mujoco.h>
+
+#include <cmath>
+#include <cstring>
+
+namespace gloam::python {
+namespace {
+
+constexpr int64_t kShortRun = 64;  // steps that are not worth a thread that looks after signals
+constexpr int kState = mjSTATE_INTEGRATION;
+
+void read_state(const PhysicsMemory& memory, std::vector<double>* state) {
+  state->resize(static_cast<size_t>(mj_stateSize(memory.model.get(), kState)));
+  mj_getState(memory.model.get(), memory.data.get(), state->data(), kState);
+}
+
+}  // namespace
+
+Run::Run(std::unique_ptr<Simulation> simulation, nb::object keep)
+    : simulation_(std::move(simulation)), keep_(std::move(keep)), hook_(nb::none()) {
+  check(simulation_->set_step_hook(
+      [this](const mjModel_* model, mjData_* data) { call_hook(model, data); }));
+}
+
+Run::~Run() { close(); }
+
+Simulation& Run::simulation() {
+  if (simulation_ == nullptr) raise("ClosedError", "the simulation is closed");
+  if (getpid() != process_)
+    raise("ForkedError", "the simulation belongs to the process that this one was forked from",
+          "make it in the new process, or start processes by 'spawn'");
+  return *simulation_;
+}
+
+void Run::close() {
+  if (simulation_ == nullptr) return;
+  if (getpid() != process_) {  // its threads are in the other process: nothing can be waited for
+    static_cast<void>(simulation_.release());
+    return;
+  }
+  for (const auto& weak : inboxes_)
+    if (const auto inbox = weak.lock()) inbox->close();
+  std::unique_ptr<Simulation> simulation = std::move(simulation_);
+  const nb::gil_scoped_release released;
+  simulation->request_stop();
+  simulation.reset();
+}
+
+void Run::add(const std::shared_ptr<Inbox>& inbox) {
+  std::erase_if(inboxes_, [](const auto& one) { return one.expired(); });
+  inboxes_.push_back(inbox);
+}
+
+void Run::restart_inboxes() {
+  const int64_t step = simulation_->stats().step;
+  for (const auto& weak : inboxes_) {
+    if (const auto inbox = weak.lock()) {
+      inbox->clear();
+      inbox->set_next_from(step);
+    }
+  }
+}
+
+// What Python wrote between two steps is put back and given to the next step by the hook, where
+// logs see it as what it is: an input.
+void Run::give_written() {
+  if (!is_watched_ || seen_.empty()) return;
+  read_state(memory_, &now_);
+  written_ = {};
+  for (size_t i = 0; i < now_.size(); ++i) {
+    if (std::memcmp(&now_[i], &seen_[i], sizeof(double)) == 0) continue;
+    written_.index.push_back(i);
+    written_.value.push_back(now_[i]);
+  }
+  if (written_.index.empty()) return;
+  mj_setState(memory_.model.get(), memory_.data.get(), seen_.data(), kState);
+  for (const double value : written_.value) {
+    if (std::isfinite(value)) continue;
+    written_ = {};
+    raise("InputError", "a number that is not finite was written into the state",
+          "the state is as it was before");
+  }
+  has_written_.store(true, std::memory_order_release);
+}
+
+void Run::look_at_memory() {
+  PhysicsMemory now = simulation_->memory();
+  if (now.data == memory_.data && now.model == memory_.model) return;
+  memory_ = std::move(now);
+  ++generation_;
+}
+
+void Run::look_at_state() {
+  if (!is_watched_) return;
+  read_state(memory_, &seen_);
+}
+
+void Run::call_hook(const mjModel_* model, mjData_* data) {
+  if (has_written_.load(std::memory_order_acquire)) {
+    std::vector<double> state(static_cast<size_t>(mj_stateSize(model, kState)));
+    mj_getState(model, data, state.data(), kState);
+    for (size_t i = 0; i < written_.index.size(); ++i)
+      if (written_.index[i] < state.size()) state[written_.index[i]] = written_.value[i];
+    mj_setState(model, data, state.data(), kState);
+    has_written_.store(false, std::memory_order_release);
+  }
+  if (!has_hook_.load(std::memory_order_acquire)) return;
+  const nb::gil_scoped_acquire acquired;
+  try {
+    hook_();
+  } catch (nb::python_error& error) {
+    const std::lock_guard lock(hook_mutex_);
+    if (!hook_error_) hook_error_ = std::make_unique<nb::python_error>(std::move(error));
+    simulation_->pause();
+    simulation_->request_stop();
+  }
+}
+
+// A call that moves time: with what was written before it, and with errors of hooks after it.
+template <class F>
+void Run::guarded_call(F&& job) {
+  simulation();
+  give_written();
+  Status status;
+  std::exception_ptr thrown;
+  try {
+    status = job();
+  } catch (...) {
+    thrown = std::current_exception();  // Ctrl-C
+  }
+  if (is_watched_ && (thrown || !status.ok())) look_at_memory();
+  look_at_state();
+  std::unique_ptr<nb::python_error> error;
+  {
+    const std::lock_guard lock(hook_mutex_);
+    error.swap(hook_error_);
+  }
+  if (error != nullptr) throw std::move(*error);
+  for (const auto& weak : inboxes_)
+    if (const auto inbox = weak.lock()) inbox->rethrow();
+  if (thrown) std::rethrow_exception(thrown);
+  check(status);
+}
+
+void Run::step(int64_t n) {
+  if (n < 0) raise("UsageError", "a number of steps is not negative");
+  if (n == 0) return;
+  if (n > kShortRun || has_hook_ || !inboxes_.empty()) {
+    run_until(simulation().latest().step() + n);
+    return;
+  }
+  guarded_call([&] { return without_gil([&] { return simulation_->step(n); }); });
+}
+
+void Run::run_until(int64_t step) {
+  guarded_call([&] {
+    return interruptible([&] { return simulation_->run_until(step); },
+                         [&] { simulation_->request_stop(); });
+  });
+}
+
+void Run::resume() {
+  simulation();
+  give_written();
+  seen_.clear();
+  simulation_->resume();
+}
+
+void Run::pause() {
+  simulation();
+  without_gil([&] { simulation_->pause(); });
+  if (is_watched_) look_at_memory();
+  look_at_state();
+}
+
+void Run::reset() {
+  simulation();
+  has_written_ = false;
+  const Status status = without_gil([&] { return simulation_->post({.what = ResetSim{}}); });
+  check(status);
+  if (is_watched_) look_at_memory();
+  look_at_state();
+  restart_inboxes();
+}
+
+void Run::recompile(const World& world) {
+  simulation();
+  give_written();
+  if (has_written_.exchange(false))
+    mj_setState(memory_.model.get(), memory_.data.get(), now_.data(), kState);
+  const Status status = interruptible([&] { return simulation_->recompile(world); }, [] {});
+  if (is_watched_) look_at_memory();
+  look_at_state();
+  check(status);
+}
+
+void Run::restore(const Checkpoint& checkpoint) {
+  simulation();
+  has_written_ = false;
+  const Status status = interruptible([&] { return simulation_->restore(checkpoint); }, [] {});
+  if (is_watched_) look_at_memory();
+  look_at_state();
+  restart_inboxes();
+  check(status);
+}
+
+void Run::set_hook(nb::object hook) {
+  simulation();
+  const bool is_set = !hook.is_none();
+  {
+    // The physics thread may be in the old one.
+    const nb::gil_scoped_release released;
+    has_hook_ = false;
+    static_cast<void>(simulation_->latest());  // a call between two steps
+  }
+  hook_ = std::move(hook);
+  has_hook_ = is_set;
+}
+
+const PhysicsMemory& Run::memory() {
+  simulation();
+  if (!is_watched_) {
+    look_at_memory();
+    is_watched_ = true;
+    if (simulation_->paused()) look_at_state();
+  }
+  return memory_;
+}
+
+int64_t Run::generation() {
+  memory();
+  return generation_;
+}
+
+nb::object Run::step_until(Inbox& inbox) {
+  simulation();
+  if (!simulation_->paused())
+    raise("UsageError", "the simulation runs", "pause() it before step_until()");
+  Stream& stream = inbox.stream();
+  if (stream.complete_at(0) < 0)
+    raise("UsageError", "a stream of topics has no one next message", "iterate over it");
+  const Rational rate = simulation_->step_rate();
+  int64_t from = inbox.next_from();
+  int64_t complete = stream.complete_at(from);
+  const int64_t now = simulation_->latest().step();
+  without_gil([&] { stream.flush(); });
+  if (complete < now) {  // time has gone on without it
+    inbox.clear();
+    from = now;
+    complete = stream.complete_at(from);
+  }
+  for (;;) {
+    if (complete > simulation_->latest().step()) run_until(complete);
+    check(interruptible(
+        [&] {
+          stream.flush();
+          return stream.status();
+        },
+        [&] { simulation_->request_stop(); }));
+    inbox.rethrow();
+    if (const std::optional<Waiting> message = inbox.pop()) {
+      inbox.set_next_from(message->step);
+      const auto delivered = static_cast<int64_t>(std::ceil(
+          message->delivery * static_cast<double>(rate.num) / static_cast<double>(rate.den) -
+          1e-6));
+      if (delivered > simulation_->latest().step()) run_until(delivered);
+      return message->make();
+    }
+    while (stream.complete_at(from) <= complete) ++from;  // its model dropped that one
+    inbox.set_next_from(from);
+    complete = stream.complete_at(from);
+  }
+}
+
+}  // namespace gloam::python

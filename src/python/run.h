@@ -1,0 +1,77 @@
+#pragma once
+// Run: a Simulation as Python holds it, with what Python wrote into its memory.
+
+#include <unistd.h>
+
+#include <atomic>
+#include <memory>
+#include <mutex>
+#include <vector>
+
+#include "core.h"
+#include "gloam/simulation.h"
+#include "inbox.h"
+
+namespace gloam::python {
+
+/// Numbers of mjSTATE_INTEGRATION that Python wrote between two steps.
+struct Written {
+  std::vector<size_t> index;
+  std::vector<double> value;
+};
+
+class Run {
+ public:
+  Run(std::unique_ptr<Simulation> simulation, nb::object keep);
+  ~Run();
+
+  /// Raises: closed, or this process was forked from the one that made it.
+  Simulation& simulation();
+  void close();
+  bool is_closed() const { return simulation_ == nullptr; }
+
+  void step(int64_t n);
+  void run_until(int64_t step);
+  void resume();
+  void pause();
+  void reset();
+  void recompile(const World& world);
+  void restore(const Checkpoint& checkpoint);
+  void set_hook(nb::object hook);
+
+  /// Memory that physics steps in now; from then on what Python writes into it counts as input.
+  const PhysicsMemory& memory();
+  /// Number of that memory; another one after a recompile, a restore, a failure.
+  int64_t generation();
+  /// The next message of a stream, at the time at which it reaches a reader.
+  nb::object step_until(Inbox& inbox);
+
+  void add(const std::shared_ptr<Inbox>& inbox);
+
+ private:
+  void give_written();
+  void look_at_memory();
+  void look_at_state();
+  void call_hook(const mjModel_* model, mjData_* data);
+  void restart_inboxes();
+  template <class F>
+  void guarded_call(F&& job);
+
+  std::unique_ptr<Simulation> simulation_;
+  nb::object keep_;  // made the memory, if it is not the simulation's own
+  const pid_t process_ = getpid();
+  PhysicsMemory memory_;
+  int64_t generation_ = 0;
+  bool is_watched_ = false;   // Python holds arrays of the memory
+  std::vector<double> seen_;  // state when Python last got it; empty = it runs, or was never asked
+  std::vector<double> now_;
+  Written written_;
+  std::atomic<bool> has_written_{false};
+  nb::object hook_;
+  std::atomic<bool> has_hook_{false};
+  std::mutex hook_mutex_;
+  std::unique_ptr<nb::python_error> hook_error_;
+  std::vector<std::weak_ptr<Inbox>> inboxes_;
+};
+
+}  // namespace gloam::python

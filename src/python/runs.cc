@@ -1,0 +1,103 @@
+// Batch runs, stills, comparisons.
+
+#include "gloam/run.h"
+
+#include "frames.h"
+#include "gloam/render.h"
+#include "reports.h"
+#include "run.h"
+#include "streams.h"
+
+namespace gloam::python {
+namespace {
+
+nb::list stills(const World& world, double time, const nb::list& requests, nb::object progress) {
+  std::vector<CameraRequest> wanted;
+  for (const nb::handle request : requests)
+    wanted.push_back(camera_request(nb::cast<nb::dict>(request)));
+  auto frames = with_progress(std::move(progress), [&](const ProgressCallback& callback) {
+    return render_stills(world, time, wanted, callback);
+  });
+  nb::list list;
+  for (CameraFrame& frame : frames)
+    list.append(nb::cast(Frame{std::make_shared<CameraFrame>(std::move(frame))}));
+  return list;
+}
+
+/// A renderer of one World that Python keeps, for pictures of present instants.
+class Painter {
+ public:
+  explicit Painter(const World& world)
+      : renderer_(take(without_gil([&] { return SceneRenderer::create(world); }))) {}
+  Frame paint(Run& run, const nb::dict& options, int64_t index) {
+    const CameraRequest request = camera_request(options);
+    const Snapshot now = run.simulation().latest();
+    return {take(without_gil([&] { return renderer_.render({&now, 1}, request, index); }))};
+  }
+
+ private:
+  SceneRenderer renderer_;
+};
+
+}  // namespace
+
+RunRequest run_request(const nb::dict& options) {
+  RunRequest request;
+  const auto read = [&]<class T>(const char* key, T* value) {
+    if (options.contains(key) && !options[key].is_none()) *value = nb::cast<T>(options[key]);
+  };
+  read("out", &request.out);
+  read("overwrite", &request.overwrite);
+  read("cameras", &request.cameras);
+  read("width", &request.width);
+  read("height", &request.height);
+  read("duration", &request.duration);
+  read("seed", &request.simulation.seed);
+  read("timestep", &request.simulation.timestep);
+  double rate = 0;
+  read("rate", &rate);
+  request.rate = rational(rate);
+  read("mcap", &request.log.file);
+  read("topics", &request.log.topics);
+  return request;
+}
+
+nb::dict report_dict(const RunReport& report) {
+  nb::dict results;
+  for (const auto& [name, value] : report.results) results[name.c_str()] = value;
+  nb::dict made;
+  made["out"] = report.out;
+  made["steps"] = report.steps;
+  made["sim_time"] = report.sim_time;
+  made["wall_time"] = report.wall_time;
+  made["hash"] = report.hash;
+  made["frames"] = report.frames;
+  made["written"] = report.written;
+  made["results"] = results;
+  made["notes"] = report.notes;
+  made["error"] = report.status.ok() ? std::string() : report.status.error().to_string();
+  return made;
+}
+
+void bind_runs(nb::module_& m) {
+  m.def("set_record_outputs", [](Scene& scene, const std::vector<std::string>& outputs) {
+    set_record_outputs(outputs, &scene);
+  });
+  m.def(
+      "run_and_record",
+      [](const World& world, const nb::dict& options, nb::object progress) {
+        const RunRequest request = run_request(options);
+        return report_dict(
+            with_progress(std::move(progress), [&](const ProgressCallback& callback) {
+              return run_and_record(world, request, callback);
+            }));
+      },
+      nb::arg("world"), nb::arg("options"), nb::arg("progress").none() = nb::none());
+  m.def("render_stills", &stills, nb::arg("world"), nb::arg("time"), nb::arg("requests"),
+        nb::arg("progress").none() = nb::none());
+  nb::class_<Painter>(m, "Painter")
+      .def(nb::init<const World&>())
+      .def("paint", &Painter::paint, nb::arg("run"), nb::arg("options"), nb::arg("index") = 0);
+}
+
+}  // namespace gloam::python

@@ -1,0 +1,286 @@
+// Running simulations.
+
+#include "gloam/simulation.h"
+
+#include "frames.h"
+#include "gloam/log.h"
+#include "gloam/view.h"
+#include "handles.h"
+#include "memory.h"
+#include "run.h"
+#include "streams.h"
+
+namespace gloam::python {
+namespace {
+
+std::unique_ptr<Run> create(const World& world, uint64_t seed, double timestep,
+                            const std::string& pace, double speed, nb::object make_data) {
+  SimulationOptions options;
+  options.seed = seed;
+  options.timestep = timestep;
+  options.speed = speed;
+  if (pace == "lockstep") {
+    options.pace = Pace::kLockstep;
+  } else if (pace == "fast") {
+    options.pace = Pace::kFast;
+  } else if (pace == "realtime") {
+    options.pace = Pace::kRealTime;
+  } else {
+    raise("UsageError", "there is no pace '" + pace + "'", "one of: lockstep, fast, realtime");
+  }
+  if (!make_data.is_none()) options.make_data = data_maker(make_data);
+  auto made = without_gil([&] { return Simulation::create(world, options); });
+  return std::make_unique<Run>(take(std::move(made)), std::move(make_data));
+}
+
+// Posts for the holder of a lease, else for everybody.
+void post(Run& run, decltype(Command::what) what, int64_t step, ControlLease* lease) {
+  const Command command{step, std::move(what)};
+  Simulation& simulation = run.simulation();
+  check(lease != nullptr ? lease->post(command) : simulation.post(command));
+}
+
+LiveFieldId live_field(const std::string& name) {
+  static const std::vector<std::string> names = {"gravity",
+                                                 "wind",
+                                                 "body_mass",
+                                                 "geom_friction",
+                                                 "height_field",
+                                                 "light_diffuse",
+                                                 "light_intensity",
+                                                 "light_active",
+                                                 "geom_color",
+                                                 "material_color",
+                                                 "material_emission",
+                                                 "material_specular",
+                                                 "material_shininess",
+                                                 "material_reflectance",
+                                                 "material_metallic",
+                                                 "material_roughness"};
+  static_assert(kLiveFieldCount == 16);
+  for (size_t i = 0; i < names.size(); ++i)
+    if (names[i] == name) return static_cast<LiveFieldId>(i);
+  std::string all;
+  for (const std::string& one : names) all += all.empty() ? one : ", " + one;
+  raise("NotFoundError", "there is no live field '" + name + "'", "one of: " + all);
+}
+
+void bind_commands(nb::class_<Run>& c) {
+  constexpr int64_t kNext = Command::kNextStep;
+  const auto lease = nb::arg("lease").none() = nb::none();
+  c.def(
+      "set_control",
+      [](Run& run, Actuator actuator, double value, int64_t step, ControlLease* l) {
+        post(run, SetControl{actuator, value}, step, l);
+      },
+      nb::arg("actuator"), nb::arg("value"), nb::arg("step") = kNext, lease);
+  c.def(
+      "set_controls",
+      [](Run& run, Robot robot, nb::handle values, int64_t step, ControlLease* l) {
+        post(run, SetControls{robot, doubles(values)}, step, l);
+      },
+      nb::arg("robot"), nb::arg("values"), nb::arg("step") = kNext, lease);
+  c.def(
+      "set_velocity_goal",
+      [](Run& run, Robot robot, nb::handle goal, int64_t step, ControlLease* l) {
+        const Vec3 v = vec3(goal, "a velocity goal (vx, vy, yaw rate)");
+        post(run, SetVelocityGoal{robot, v.x, v.y, v.z}, step, l);
+      },
+      nb::arg("robot"), nb::arg("goal"), nb::arg("step") = kNext, lease);
+  c.def(
+      "set_joint_goal",
+      [](Run& run, Joint joint, double position, int64_t step, ControlLease* l) {
+        post(run, SetJointGoal{joint, position}, step, l);
+      },
+      nb::arg("joint"), nb::arg("position"), nb::arg("step") = kNext, lease);
+  c.def(
+      "set_joint_state",
+      [](Run& run, Joint joint, nb::object qpos, nb::object qvel, int64_t step) {
+        SetJointState state{joint, {}, {}};
+        if (!qpos.is_none()) state.qpos = doubles(qpos);
+        if (!qvel.is_none()) state.qvel = doubles(qvel);
+        post(run, std::move(state), step, nullptr);
+      },
+      nb::arg("joint"), nb::arg("qpos").none() = nb::none(), nb::arg("qvel").none() = nb::none(),
+      nb::arg("step") = kNext);
+  c.def(
+      "set_mocap",
+      [](Run& run, Body body, nb::handle X_WB, int64_t step) {
+        post(run, SetMocapPose{body, pose(X_WB)}, step, nullptr);
+      },
+      nb::arg("body"), nb::arg("pose"), nb::arg("step") = kNext);
+  c.def(
+      "set_wrench",
+      [](Run& run, Body body, nb::handle force, nb::handle torque, int64_t step) {
+        post(run, SetWrench{body, vec3(force, "a force"), vec3(torque, "a torque")}, step, nullptr);
+      },
+      nb::arg("body"), nb::arg("force"), nb::arg("torque"), nb::arg("step") = kNext);
+  c.def(
+      "add_velocity",
+      [](Run& run, Body body, nb::handle velocity, int64_t step) {
+        post(run, AddVelocity{body, vec3(velocity, "a velocity")}, step, nullptr);
+      },
+      nb::arg("body"), nb::arg("velocity"), nb::arg("step") = kNext);
+  c.def(
+      "set_live_field",
+      [](Run& run, const std::string& field, int first, nb::handle values, int64_t step) {
+        const std::vector<double> numbers = doubles(values);
+        post(run, SetLiveField{live_field(field), first, {numbers.begin(), numbers.end()}}, step,
+             nullptr);
+      },
+      nb::arg("field"), nb::arg("first"), nb::arg("values"), nb::arg("step") = kNext);
+}
+
+nb::dict stats_dict(Run& run) {
+  const SimulationStats stats = run.simulation().stats();
+  nb::dict made;
+  made["step"] = stats.step;
+  made["time"] = stats.time;
+  made["hash"] = stats.hash;
+  made["realtime_factor"] = stats.realtime_factor;
+  made["dropped_snapshots"] = stats.dropped_snapshots;
+  made["commands_applied"] = stats.commands_applied;
+  made["warnings"] = stats.warnings;
+  return made;
+}
+
+/// The instant's poses, velocities and contacts, solved once for a step.
+class Solver {
+ public:
+  const Instant& at(Run& run) {
+    const Snapshot now = run.simulation().latest();
+    check(instant_.solve(now));
+    return instant_;
+  }
+
+ private:
+  Instant instant_;
+};
+
+nb::list contact_list(const Instant& instant) {
+  nb::list list;
+  const auto three = [](const Vec3& v) { return new_array<double>({v.x, v.y, v.z}, {3}); };
+  for (const ContactState& contact : instant.contacts()) {
+    nb::dict made;
+    made["geoms"] = nb::make_tuple(contact.geoms[0].id, contact.geoms[1].id);
+    made["position"] = three(contact.position);
+    made["normal"] = three(contact.normal);
+    made["distance"] = contact.distance;
+    made["force"] = three(contact.force);
+    made["torque"] = three(contact.torque);
+    list.append(made);
+  }
+  return list;
+}
+
+void bind_solver(nb::module_& m) {
+  nb::class_<Solver>(m, "Solver")
+      .def(nb::init<>())
+      .def("body",
+           [](Solver& solver, Run& run, Body body) {
+             const BodyState state = take(solver.at(run).body(body));
+             const auto three = [](const Vec3& v) {
+               return new_array<double>({v.x, v.y, v.z}, {3});
+             };
+             return nb::make_tuple(pose_tuple(state.X_WB), three(state.velocity),
+                                   three(state.angular_velocity));
+           })
+      .def("force",
+           [](Solver& solver, Run& run, Actuator a) { return take(solver.at(run).force(a)); })
+      .def("contacts", [](Solver& solver, Run& run) { return contact_list(solver.at(run)); })
+      .def(
+          "value",
+          [](Solver& solver, Run& run, const std::string& field, const std::string& element) {
+            std::vector<double> numbers = take(solver.at(run).value(field, element));
+            const size_t n = numbers.size();
+            return new_array<double>(std::move(numbers), {n});
+          },
+          nb::arg("run"), nb::arg("field"), nb::arg("element") = "");
+}
+
+void bind_view(nb::module_& m) {
+  nb::class_<ViewServer>(m, "ViewServer")
+      .def_prop_ro("url", &ViewServer::url)
+      .def_prop_ro("port", &ViewServer::port)
+      .def("stop", &ViewServer::stop, nb::call_guard<nb::gil_scoped_release>());
+  m.def(
+      "start_view",
+      [](Run& run, int port, const std::string& camera, const nb::dict& render) {
+        ViewOptions options;
+        options.port = port;
+        options.camera = camera;
+        if (render.size() > 0) options.render = render_options(render);
+        return take(without_gil([&] { return ViewServer::start(run.simulation(), options); }));
+      },
+      nb::arg("run"), nb::arg("port") = 0, nb::arg("camera") = "free",
+      nb::arg("render") = nb::dict(), nb::keep_alive<0, 1>());
+}
+
+}  // namespace
+
+void bind_simulation(nb::module_& m) {
+  bind_memory(m);
+  bind_solver(m);
+  nb::class_<Checkpoint>(m, "Checkpoint", "An instant to go back to.")
+      .def_prop_ro("step", &Checkpoint::step)
+      .def_prop_ro("time", &Checkpoint::time)
+      .def_prop_ro("seed", &Checkpoint::seed)
+      .def_prop_ro("hash", &Checkpoint::hash)
+      .def_prop_ro("is_copied", &Checkpoint::is_copied);
+  nb::class_<ControlLease>(m, "Lease").def_prop_ro("robot", &ControlLease::robot);
+  nb::class_<Run> run(m, "Run", "A running simulation.");
+  run.def_static("create", &create, nb::arg("world"), nb::arg("seed"), nb::arg("timestep"),
+                 nb::arg("pace"), nb::arg("speed"), nb::arg("make_data").none() = nb::none())
+      .def("close", &Run::close)
+      .def_prop_ro("is_closed", &Run::is_closed)
+      .def("step", &Run::step, nb::arg("n") = 1)
+      .def("run_until", &Run::run_until, nb::arg("step"))
+      .def("step_until", &Run::step_until, nb::arg("stream"))
+      .def("resume", &Run::resume)
+      .def("pause", &Run::pause)
+      .def("reset", &Run::reset)
+      .def("recompile", &Run::recompile, nb::arg("world"))
+      .def("restore", &Run::restore, nb::arg("checkpoint"))
+      .def("checkpoint",
+           [](Run& r) { return take(without_gil([&] { return r.simulation().checkpoint(); })); })
+      .def("set_hook", &Run::set_hook, nb::arg("hook").none())
+      .def("set_pace",
+           [](Run& r, const std::string& pace, double speed) {
+             if (!(speed > 0)) raise("UsageError", "a speed is above 0");
+             r.simulation().set_pace(pace == "realtime"   ? Pace::kRealTime
+                                     : pace == "lockstep" ? Pace::kLockstep
+                                                          : Pace::kFast,
+                                     speed);
+           })
+      .def_prop_ro("paused", [](Run& r) { return r.simulation().paused(); })
+      .def_prop_ro("world", [](Run& r) { return r.simulation().world(); })
+      .def_prop_ro("memory", [](Run& r) { return PhysicsMemory(r.memory()); })
+      .def_prop_ro("generation", &Run::generation)
+      .def_prop_ro("stats", &stats_dict)
+      .def_prop_ro("time", [](Run& r) { return r.simulation().latest().time(); })
+      .def_prop_ro("step_count", [](Run& r) { return r.simulation().latest().step(); })
+      .def_prop_ro("hash", [](Run& r) { return r.simulation().latest().hash(); })
+      .def_prop_ro("step_rate",
+                   [](Run& r) {
+                     const Rational rate = r.simulation().step_rate();
+                     return nb::make_tuple(rate.num, rate.den);
+                   })
+      .def("check_status", [](Run& r) { check(r.simulation().status()); })
+      .def(
+          "claim", [](Run& r, Robot robot) { return take(r.simulation().claim(robot)); },
+          nb::keep_alive<0, 1>())
+      .def("camera_names", [](Run& r) { return r.simulation().camera_names(); })
+      .def("topics", [](Run& r) { return topic_list(take(r.simulation().topics())); })
+      .def("publish",
+           [](Run& r, const std::string& topic, nb::bytes data) {
+             const auto* begin = reinterpret_cast<const uint8_t*>(data.c_str());
+             check(r.simulation().publish(topic, {begin, data.size()}));
+           })
+      .def("labels", [](Run& r) {
+        return label_rows(take(without_gil([&] { return r.simulation().labels(); })));
+      });
+  bind_commands(run);
+  bind_view(m);
+}
+
+}  // namespace gloam::python

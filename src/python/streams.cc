@@ -1,0 +1,168 @@
+// Opening of streams, and render requests.
+
+#include "streams.h"
+
+#include "frames.h"
+#include "inbox.h"
+#include "messages.h"
+#include "run.h"
+
+namespace gloam::python {
+namespace {
+
+template <class T>
+void read_key(const nb::dict& options, const char* key, T* value) {
+  if (options.contains(key) && !options[key].is_none()) *value = nb::cast<T>(options[key]);
+}
+
+// Where several threads may add messages and one Python object looks: see Inbox.
+std::shared_ptr<Inbox> make_inbox(Run& run, nb::object callback) {
+  constexpr int kWaiting = 64;  // messages
+  run.simulation();
+  return std::make_shared<Inbox>(kWaiting, std::move(callback));
+}
+
+template <class S>
+std::shared_ptr<Inbox> open(Run& run, std::shared_ptr<Inbox> inbox,
+                            Result<std::unique_ptr<S>> stream) {
+  inbox->open(take(std::move(stream)), run.simulation().latest().step());
+  run.add(inbox);
+  return inbox;
+}
+
+std::shared_ptr<Inbox> open_camera(Run& run, const nb::dict& options, nb::object callback) {
+  const CameraRequest request = camera_request(options);
+  auto inbox = make_inbox(run, std::move(callback));
+  const auto take_frame = [raw = inbox.get()](std::shared_ptr<const CameraFrame> frame) {
+    const int64_t next = frame->step + 1;
+    const double delivery = frame->delivery;
+    raw->put({next, delivery, [frame = std::move(frame)] { return nb::cast(Frame{frame}); }});
+  };
+  auto stream = without_gil([&] { return run.simulation().open_camera(request, take_frame); });
+  return open(run, std::move(inbox), std::move(stream));
+}
+
+std::shared_ptr<Inbox> open_lidar(Run& run, const std::string& name, bool required,
+                                  nb::object callback) {
+  auto inbox = make_inbox(run, std::move(callback));
+  const auto take_scan = [raw = inbox.get()](std::shared_ptr<const LidarScan> scan) {
+    const int64_t next = scan->step;
+    raw->put({next, scan->end, [scan = std::move(scan)] { return nb::cast(Scan{scan}); }});
+  };
+  LidarRequest request;
+  request.lidar = name;
+  request.required = required;
+  auto stream = without_gil([&] { return run.simulation().open_lidar(request, take_scan); });
+  return open(run, std::move(inbox), std::move(stream));
+}
+
+std::shared_ptr<Inbox> open_sensor(Run& run, const std::string& name, bool required,
+                                   nb::object callback) {
+  auto inbox = make_inbox(run, std::move(callback));
+  const auto take_sample = [raw = inbox.get()](const SensorMessage& sample) {
+    raw->put({sample.step + 1, sample.delivery, [sample] { return nb::cast(sample); }});
+  };
+  SensorRequest request;
+  request.sensor = name;
+  request.required = required;
+  auto stream = without_gil([&] { return run.simulation().open_sensor(request, take_sample); });
+  return open(run, std::move(inbox), std::move(stream));
+}
+
+std::shared_ptr<Inbox> open_topics(Run& run, const std::vector<std::string>& topics, bool required,
+                                   nb::object callback) {
+  auto inbox = make_inbox(run, std::move(callback));
+  const auto take_message = [raw = inbox.get()](const TopicMessage& message) {
+    auto kept = std::make_shared<Message>(Message{message.topic.name,
+                                                  message.topic.type,
+                                                  message.step,
+                                                  message.time,
+                                                  message.delivery,
+                                                  {message.data.begin(), message.data.end()}});
+    raw->put({message.step, message.delivery, [kept] { return nb::cast(kept); }});
+  };
+  TopicRequest request;
+  request.topics = topics;
+  request.required = required;
+  auto stream = without_gil([&] { return run.simulation().open_topics(request, take_message); });
+  return open(run, std::move(inbox), std::move(stream));
+}
+
+CameraStream& camera_stream(Inbox& inbox) {
+  auto* camera = dynamic_cast<CameraStream*>(&inbox.stream());
+  if (camera == nullptr) raise("UsageError", "this is no camera's stream");
+  return *camera;
+}
+
+}  // namespace
+
+RenderOptions render_options(const nb::dict& options) {
+  RenderOptions render;
+  read_key(options, "tier", &render.tier);
+  read_key(options, "spp", &render.spp);
+  read_key(options, "error", &render.error);
+  read_key(options, "max_depth", &render.max_depth);
+  read_key(options, "device", &render.device);
+  read_key(options, "denoise", &render.denoise);
+  read_key(options, "look", &render.look);
+  read_key(options, "ev100", &render.ev100);
+  return render;
+}
+
+Rational rational(double rate) {
+  for (int64_t den = 1; den <= 1000000; den *= 10) {
+    const double num = rate * static_cast<double>(den);
+    if (num == static_cast<double>(static_cast<int64_t>(num)))
+      return {static_cast<int64_t>(num), den};
+  }
+  return {static_cast<int64_t>(rate * 1e6 + 0.5), 1000000};
+}
+
+CameraRequest camera_request(const nb::dict& options) {
+  CameraRequest request;
+  request.render = render_options(options);
+  read_key(options, "camera", &request.camera);
+  read_key(options, "outputs", &request.outputs);
+  read_key(options, "width", &request.width);
+  read_key(options, "height", &request.height);
+  read_key(options, "required", &request.required);
+  double rate = 0;
+  read_key(options, "rate", &rate);
+  if (!(rate >= 0 && rate < 1e6)) raise("UsageError", "a rate is not in 0 … 1e6 Hz");
+  request.rate = rational(rate);
+  if (options.contains("pose") && !options["pose"].is_none()) request.X_WC = pose(options["pose"]);
+  return request;
+}
+
+void bind_streams(nb::module_& m) {
+  bind_messages(m);
+  nb::class_<Inbox>(m, "Stream", "An open stream of messages.")
+      .def("close", &Inbox::close)
+      .def_prop_ro("is_open", &Inbox::is_open)
+      .def_prop_ro("dropped", [](Inbox& inbox) { return inbox.stream().dropped() + inbox.lost(); })
+      .def("flush",
+           [](Inbox& inbox) {
+             Stream& stream = inbox.stream();
+             without_gil([&] { stream.flush(); });
+             inbox.rethrow();
+           })
+      .def("pop",
+           [](Inbox& inbox) {
+             inbox.rethrow();
+             check(inbox.stream().status());
+             const std::optional<Waiting> message = inbox.pop();
+             return message ? message->make() : nb::object(nb::none());
+           })
+      .def("set_pose",
+           [](Inbox& inbox, nb::handle X_WC) { camera_stream(inbox).set_pose(pose(X_WC)); });
+  m.def("open_camera", &open_camera, nb::arg("run"), nb::arg("options"),
+        nb::arg("callback").none() = nb::none());
+  m.def("open_lidar", &open_lidar, nb::arg("run"), nb::arg("name"), nb::arg("required") = true,
+        nb::arg("callback").none() = nb::none());
+  m.def("open_sensor", &open_sensor, nb::arg("run"), nb::arg("name"), nb::arg("required") = true,
+        nb::arg("callback").none() = nb::none());
+  m.def("open_topics", &open_topics, nb::arg("run"), nb::arg("topics"), nb::arg("required") = true,
+        nb::arg("callback").none() = nb::none());
+}
+
+}  // namespace gloam::python

@@ -1,0 +1,141 @@
+// Questions about files: meshes, models, trajectories, reports of runs.
+
+#include "core.h"
+#include "gloam/model_tools.h"
+#include "gloam/report.h"
+#include "gloam/trajectory.h"
+#include "gloam/view.h"
+
+namespace gloam::python {
+namespace {
+
+nb::dict convert(const std::filesystem::path& mesh, nb::object progress) {
+  ObjectOptions object;
+  object.name = "object";
+  object.file = mesh;
+  const ObjectReport report = with_progress(
+      std::move(progress),
+      [&](const ProgressCallback& callback) { return convert_object(object, {}, callback); });
+  nb::dict made;
+  made["colliders"] = report.colliders;
+  made["triangles"] = report.triangles;
+  made["is_closed"] = report.is_closed;
+  made["size"] = nb::make_tuple(report.size.x, report.size.y, report.size.z);
+  made["volume"] = report.volume;
+  made["mass"] = report.mass;
+  made["shared"] = report.shared;
+  made["mean_distance"] = report.mean_distance;
+  made["max_distance"] = report.max_distance;
+  made["notes"] = report.notes;
+  return made;
+}
+
+nb::dict check_file(const std::filesystem::path& file, const std::filesystem::path& folder) {
+  const ModelCheck result = without_gil([&] { return check_model(file, {}, folder); });
+  check(result.status);
+  nb::dict made;
+  made["passed"] = result.passed();
+  made["bodies"] = result.bodies;
+  made["joints"] = result.joints;
+  made["geoms"] = result.geoms;
+  made["compared"] = result.compared;
+  made["unlike_stock"] = result.unlike_stock;
+  made["unlike_export"] = result.unlike_export;
+  return made;
+}
+
+Trajectory trajectory_of(nb::handle times, nb::handle poses, const std::string& name) {
+  const std::vector<double> t = doubles(times), x = doubles(poses);
+  if (x.size() != 7 * t.size())
+    throw nb::value_error("poses are (n, 7): x, y, z, qw, qx, qy, qz, for n times");
+  std::vector<StampedPose> list;
+  for (size_t i = 0; i < t.size(); ++i) {
+    const double* p = x.data() + 7 * i;
+    list.push_back({static_cast<int64_t>(t[i] * 1e9 + (t[i] < 0 ? -0.5 : 0.5)),
+                    {{p[0], p[1], p[2]}, {p[3], p[4], p[5], p[6]}}});
+  }
+  return take(make_trajectory(list, name));
+}
+
+Alignment alignment_of(const std::string& name) {
+  const std::vector<std::string> names = {"none", "origin", "se3", "sim3", "scale"};
+  for (size_t i = 0; i < names.size(); ++i)
+    if (names[i] == name) return static_cast<Alignment>(i);
+  raise("UsageError", "there is no alignment '" + name + "'",
+        "one of: none, origin, se3, sim3, scale");
+}
+
+nb::dict statistics_dict(const PoseErrors& errors) {
+  const ErrorStatistics& s = errors.statistics;
+  nb::dict made;
+  made["rmse"] = s.rmse;
+  made["mean"] = s.mean;
+  made["median"] = s.median;
+  made["std"] = s.std;
+  made["min"] = s.min;
+  made["max"] = s.max;
+  made["sse"] = s.sse;
+  made["values"] = new_array<double>(std::vector<double>(errors.values), {errors.values.size()});
+  return made;
+}
+
+nb::dict evaluate(const Trajectory& reference, const Trajectory& estimate,
+                  const std::string& alignment, double max_difference, double delta) {
+  AssociationOptions options;
+  options.max_difference = max_difference;
+  TrajectoryPair pair = take(associate(reference, estimate, options));
+  take(align(alignment_of(alignment), &pair));
+  RelativeOptions relative;
+  relative.delta = delta;
+  nb::dict made;
+  made["ate"] = statistics_dict(take(absolute_errors(pair, ErrorPart::kTranslation)));
+  made["ate_angle"] = statistics_dict(take(absolute_errors(pair, ErrorPart::kAngle)));
+  made["rpe"] = statistics_dict(take(relative_errors(pair, ErrorPart::kTranslation, relative)));
+  made["rpe_angle"] = statistics_dict(take(relative_errors(pair, ErrorPart::kAngle, relative)));
+  return made;
+}
+
+}  // namespace
+
+void bind_tools(nb::module_& m) {
+  nb::class_<Trajectory>(m, "Trajectory")
+      .def_static(
+          "read",
+          [](const std::filesystem::path& file) { return take(read_trajectory_file(file)); })
+      .def_static("make", &trajectory_of, nb::arg("times"), nb::arg("poses"),
+                  nb::arg("name") = "trajectory")
+      .def_prop_ro("name", [](const Trajectory& t) { return t.name; })
+      .def_prop_ro("path_length", &Trajectory::path_length)
+      .def("__len__", &Trajectory::size);
+  m.def("evaluate", &evaluate, nb::arg("reference"), nb::arg("estimate"),
+        nb::arg("alignment") = "none", nb::arg("max_difference") = 0.01, nb::arg("delta") = 1.0);
+  m.def("convert_object", &convert, nb::arg("mesh"), nb::arg("progress").none() = nb::none());
+  m.def("check_model", &check_file, nb::arg("file"), nb::arg("folder"));
+  m.def(
+      "write_report",
+      [](const std::vector<std::filesystem::path>& runs, const std::filesystem::path& out,
+         bool overwrite, const std::string& title) {
+        ReportRequest request;
+        request.runs = runs;
+        request.out = out;
+        request.overwrite = overwrite;
+        request.title = title;
+        const ReportOutcome outcome = take(without_gil([&] { return write_report(request); }));
+        std::vector<std::string> left_out;
+        for (const Error& error : outcome.left_out) left_out.push_back(error.to_string());
+        return nb::make_tuple(outcome.runs, outcome.pictures, left_out);
+      },
+      nb::arg("runs"), nb::arg("out"), nb::arg("overwrite") = false, nb::arg("title") = "");
+  m.def(
+      "encode_jpeg",
+      [](nb::ndarray<const uint8_t, nb::shape<-1, -1, 3>, nb::c_contig, nb::device::cpu> rgb,
+         int quality) {
+        const auto bytes =
+            take(encode_jpeg(static_cast<int>(rgb.shape(1)), static_cast<int>(rgb.shape(0)),
+                             {rgb.data(), rgb.size()}, quality));
+        return nb::bytes(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+      },
+      nb::arg("rgb"), nb::arg("quality") = 88);
+}
+
+}  // namespace gloam::python
