@@ -136,7 +136,7 @@ class Worlds:
     def _begin(self, slot: Slot, options: Mapping[str, Any]) -> dict[str, Array]:
         if self.settings.randomize:
             drawn = self.settings.draw(slot.rng)
-            slot.sim.set(drawn)
+            slot.sim.set(drawn, progress=False)
         slot.sim.reset()
         slot.actions.reset(slot.rng)
         slot.bound.begin(slot.rng, options)
