@@ -118,6 +118,7 @@ class _QuadrupedWorld(TaskWorld):
         self._goal = np.zeros(3)
         self._fixed: Array | None = None
         self._renew = 0.0
+        self._motion = (np.zeros(3), np.zeros(3), np.zeros(3), 0.0)
         self._action, self._before = np.zeros(JOINTS), np.zeros(JOINTS)
 
     def begin(self, rng: np.random.Generator, options: Mapping[str, Any]) -> None:
@@ -142,7 +143,7 @@ class _QuadrupedWorld(TaskWorld):
         for joint, target in zip(self._joints, self._stance + ACTION_SCALE * np.asarray(action), strict=True):
             joint.set_goal(float(target))
 
-    def _motion(self) -> tuple[Array, Array, Array, float]:
+    def _measured(self) -> tuple[Array, Array, Array, float]:
         """Velocity, angular velocity, direction of gravity, all in the trunk's frame, and its height [m]."""
         pose = self._robot.pose
         inverse = pose.R.T
@@ -150,7 +151,7 @@ class _QuadrupedWorld(TaskWorld):
         return inverse @ self._robot.velocity, inverse @ self._robot.angular_velocity, down, float(pose.p[2])
 
     def observe(self) -> dict[str, Array]:
-        velocity, turning, down, _ = self._motion()
+        velocity, turning, down, _ = self._motion = self._measured()
         return {
             "velocity": velocity,
             "angular_velocity": turning,
@@ -163,7 +164,7 @@ class _QuadrupedWorld(TaskWorld):
 
     def judge(self, action: Array) -> Outcome:
         """Tracking of the goal, less what is jerky, tilted or bounces; all per second, times the control interval."""
-        velocity, turning, down, height = self._motion()
+        velocity, turning, down, height = self._motion
         self._before, self._action = self._action, np.array(action)
         wrong = float(np.sum((self._goal[:2] - velocity[:2]) ** 2))
         turned_wrong = float((self._goal[2] - turning[2]) ** 2)

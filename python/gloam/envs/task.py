@@ -47,7 +47,7 @@ class TaskWorld(ABC):
 
     @abstractmethod
     def judge(self, action: Array) -> Outcome:
-        """Reward and end of the control step that has just been taken with `action`."""
+        """Reward and end of the control step that was taken with `action`; `observe` has been called before."""
 
     def start_info(self) -> dict[str, Any]:
         """`info` of a reset."""
