@@ -395,3 +395,15 @@ def test_a_house_has_ways_to_its_goals():
             env.step(np.array([0.5, 0.0]))
         after = env.sim.robots["cart"].pose.p
         assert np.linalg.norm(after - before) > 0.02 and abs(after[2]) < 0.03  # it stands on the floor, and is free
+
+
+def test_the_quadruped_stands_and_sees_its_last_action():
+    env = gym.make("gloam/QuadrupedVelocity-v0", noisy=False)
+    env.reset(seed=0, options={"goal": (0.0, 0.0, 0.0)})
+    for k in range(50):
+        action = np.full(12, 0.01 * (k % 3), dtype=np.float32)
+        observation, reward, terminated, _, info = env.step(action)
+        assert not terminated and not info["fallen"]
+        np.testing.assert_array_equal(observation[-12:], action)
+    assert reward > 0.8 * 1.5 * 0.02  # of the most that there is
+    assert observation[8] == pytest.approx(-1, abs=0.02)  # gravity is down

@@ -139,6 +139,9 @@ class _QuadrupedWorld(TaskWorld):
         self._goal = self._rng.uniform(low, high) if self._fixed is None else self._fixed
         self._renew = now + self._task.hold
 
+    def decide(self, action: Array) -> None:
+        self._before, self._action = self._action, np.array(action)
+
     def apply(self, action: Array) -> None:
         for joint, target in zip(self._joints, self._stance + ACTION_SCALE * np.asarray(action), strict=True):
             joint.set_goal(float(target))
@@ -165,7 +168,6 @@ class _QuadrupedWorld(TaskWorld):
     def judge(self, action: Array) -> Outcome:
         """Tracking of the goal, less what is jerky, tilted or bounces; all per second, times the control interval."""
         velocity, turning, down, height = self._motion
-        self._before, self._action = self._action, np.array(action)
         wrong = float(np.sum((self._goal[:2] - velocity[:2]) ** 2))
         turned_wrong = float((self._goal[2] - turning[2]) ** 2)
         has_fallen = -down[2] < FALLEN or height < LOWEST

@@ -37,6 +37,9 @@ class TaskWorld(ABC):
     def begin(self, rng: np.random.Generator, options: Mapping[str, Any]) -> None:
         """Begins an episode: the simulation is at its initial state; places and draws what the task draws."""
 
+    def decide(self, action: Array) -> None:
+        """Told of an action at the beginning of its control step, before it is on its way to the robot."""
+
     @abstractmethod
     def apply(self, action: Array) -> None:
         """Gives an action to the robot, to be in force from the next physics step on."""
