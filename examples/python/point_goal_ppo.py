@@ -38,7 +38,7 @@ class Policy(GaussianMixin, Model):  # type: ignore[misc]
         Model.__init__(self, **spaces)
         GaussianMixin.__init__(self, clip_actions=False)
 
-    @nn.compact
+    @nn.compact  # type: ignore[untyped-decorator]
     def __call__(self, inputs: dict[str, Any], role: str) -> tuple[Any, dict[str, Any]]:
         x = inputs["observations"]
         for width in (128, 64):
@@ -54,7 +54,7 @@ class Value(DeterministicMixin, Model):  # type: ignore[misc]
         Model.__init__(self, **spaces)
         DeterministicMixin.__init__(self)
 
-    @nn.compact
+    @nn.compact  # type: ignore[untyped-decorator]
     def __call__(self, inputs: dict[str, Any], role: str) -> tuple[Any, dict[str, Any]]:
         x = inputs["observations"]
         for width in (128, 64):
@@ -65,7 +65,7 @@ class Value(DeterministicMixin, Model):  # type: ignore[misc]
 def make_agent(env: Any) -> PPO:
     """A PPO agent for an environment that skrl has wrapped."""
     spaces = {"observation_space": env.observation_space, "action_space": env.action_space}
-    models = {"policy": Policy(**spaces), "value": Value(**spaces)}
+    models: dict[str, Any] = {"policy": Policy(**spaces), "value": Value(**spaces)}
     for role, model in models.items():
         model.init_state_dict(role=role)
     settings = {
