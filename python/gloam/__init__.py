@@ -38,6 +38,11 @@ from .scene import Option, Scene, describe  # noqa: E402
 from .simulation import Checkpoint, Simulation, load  # noqa: E402
 from .world import World  # noqa: E402
 
+import importlib.util as _util  # noqa: E402
+
+if _util.find_spec("gymnasium") is not None:  # its environments are registered with the import
+    from .envs import make_env, make_vec_env  # noqa: E402
+
 __version__: str = _core.version()
 home = _core.home
 configuration = _core.configuration
@@ -48,5 +53,5 @@ __all__ = [
     "Actuator", "Body", "Camera", "Checkpoint", "ClosedError", "DivergedError", "Error", "ForkedError", "Frame", "InputError", "IoError", "Joint",
     "Lidar", "Log", "NotFoundError", "Option", "PartialError", "Pose", "Robot", "RunReport", "Scan", "Scene", "Sensor", "Simulation",
     "StoppedError", "Subscription", "UnsupportedError", "UsageError", "Verification", "World", "check", "configuration", "convert", "describe",
-    "evaluate", "home", "load", "render", "replay", "report", "run", "set_log_level", "set_thread_count", "yaw_quaternion",
+    "evaluate", "home", "load", "make_env", "make_vec_env", "render", "replay", "report", "run", "set_log_level", "set_thread_count", "yaw_quaternion",
 ]

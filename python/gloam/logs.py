@@ -66,7 +66,7 @@ class Log:
 
     def __init__(self, file: PathLike, folder: PathLike | None = None) -> None:
         self.file = Path(file)
-        self._folder = Path(folder) if folder is not None else Path()
+        self._folder = "" if folder is None else os.fspath(folder)
         self.info: dict[str, Any] = dict(_core.describe_log(self.file))
 
     @property

@@ -79,7 +79,7 @@ class Scene:
     """
 
     def __init__(self, path: PathLike, root: PathLike = "", strict: bool = False) -> None:
-        self._scene = _core.Scene.load(Path(path), Path(root) if root else Path(), strict)
+        self._scene = _core.Scene.load(Path(path), os.fspath(root), strict)
 
     @classmethod
     def _of(cls, scene: _core.Scene) -> Self:
@@ -90,12 +90,15 @@ class Scene:
     @classmethod
     def parse(cls, text: str, folder: PathLike = ".", root: PathLike = "", strict: bool = False) -> Self:
         """A scene from the text of a scene file, as if that lay in `folder`."""
-        return cls._of(_core.Scene.parse(text, Path(folder), Path(root) if root else Path(), strict))
+        return cls._of(_core.Scene.parse(text, Path(folder), os.fspath(root), strict))
 
     @classmethod
-    def from_dict(cls, tables: Mapping[str, Any], folder: PathLike = ".") -> Self:
-        """A scene from nested dicts; lists of dicts are what [[…]] is in a file: {"robot": [{"name": "go", "file": …}]}."""
-        return cls.parse(_toml.table_text(tables), folder)
+    def from_dict(cls, tables: Mapping[str, Any], folder: PathLike = ".", root: PathLike = "", strict: bool = False) -> Self:
+        """A scene from nested dicts; lists of dicts are what [[…]] is in a file: {"robot": [{"name": "go", "file": …}]}.
+
+        Files are looked for from `folder` and may lie below `root` (docs/security.md); root="/" trusts all that the scene names.
+        """
+        return cls.parse(_toml.table_text(tables), folder, root, strict)
 
     @property
     def name(self) -> str:

@@ -193,7 +193,7 @@ class Simulation:
         self._core.pause()
 
     def reset(self) -> None:
-        """Back to the initial state; time and frames count from 0 again."""
+        """Back to the initial state, where it stands; time and frames count from 0 again."""
         self._core.reset()
         self._metrics = None
 
@@ -201,7 +201,9 @@ class Simulation:
         return Checkpoint(self._core.checkpoint())
 
     def restore(self, checkpoint: Checkpoint) -> None:
-        """Goes on from a checkpoint of this or another simulation of the same scene and timestep."""
+        """Stands at a checkpoint of this or another simulation of the same scene and timestep. Raises PartialError: it was led there by hooks."""
+        if not isinstance(checkpoint, Checkpoint):
+            raise TypeError(f"a Checkpoint is expected, not {checkpoint!r}")
         self._core.restore(checkpoint._checkpoint)
         self._take_world(World(self._core.world))
 

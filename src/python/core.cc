@@ -29,6 +29,7 @@ const char* class_of(ErrorKind kind) {
 }
 
 [[noreturn]] void raise_class(const char* type, const Error& error) {
+  const nb::gil_scoped_acquire acquired;  // the caller may have released it
   const nb::object cls = nb::module_::import_("gloam.errors").attr(type);
   const nb::object exception =
       cls(error.message, error.loc.file, error.loc.line, error.loc.column, error.hint);

@@ -115,6 +115,25 @@ nb::object new_array(std::vector<T> values, std::initializer_list<size_t> shape)
   return nb::cast(nb::ndarray<nb::numpy, T>(kept->data(), shape.size(), shape.begin(), owner));
 }
 
+/// Slots by which Python's collector finds, and breaks, cycles through an object that C++ keeps:
+/// a callback that refers to its stream. `kKept` is a member function that returns it.
+template <class T, auto kKept>
+PyType_Slot* kept_slots() {
+  static PyType_Slot slots[] = {
+      {Py_tp_traverse, reinterpret_cast<void*>(+[](PyObject* self, visitproc visit, void* arg) {
+         Py_VISIT(Py_TYPE(self));
+         if (!nb::inst_ready(self)) return 0;
+         Py_VISIT((nb::inst_ptr<T>(self)->*kKept)().ptr());
+         return 0;
+       })},
+      {Py_tp_clear, reinterpret_cast<void*>(+[](PyObject* self) {
+         (nb::inst_ptr<T>(self)->*kKept)().reset();
+         return 0;
+       })},
+      {0, nullptr}};
+  return slots;
+}
+
 // One function for each part of the module.
 void bind_scene(nb::module_& m);
 void bind_world(nb::module_& m);

@@ -15,7 +15,7 @@ Stream& Inbox::stream() {
 }
 
 void Inbox::put(Waiting message) {
-  if (callback_.is_none()) {
+  if (!has_callback_) {
     const std::lock_guard lock(mutex_);
     waiting_.push_back(std::move(message));
     if (static_cast<int>(waiting_.size()) <= capacity_) return;
@@ -24,8 +24,10 @@ void Inbox::put(Waiting message) {
     return;
   }
   const nb::gil_scoped_acquire acquired;
+  const nb::object callback = callback_;  // kept for as long as it runs
+  if (!callback.is_valid() || callback.is_none()) return;
   try {
-    callback_(message.make());
+    callback(message.make());
   } catch (nb::python_error& error) {
     const std::lock_guard lock(mutex_);
     if (!error_) error_ = std::make_unique<nb::python_error>(std::move(error));

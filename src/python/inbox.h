@@ -21,7 +21,8 @@ struct Waiting {
 class Inbox {
  public:
   /// `callback`: called for each message on the stream's thread, in place of keeping it; or none.
-  Inbox(int capacity, nb::object callback) : capacity_(capacity), callback_(std::move(callback)) {}
+  Inbox(int capacity, nb::object callback)
+      : capacity_(capacity), has_callback_(!callback.is_none()), callback_(std::move(callback)) {}
   ~Inbox() { close(); }
 
   void open(std::unique_ptr<Stream> stream, int64_t from) {
@@ -39,6 +40,8 @@ class Inbox {
   std::optional<Waiting> pop();
   void clear();
   int64_t lost() const { return lost_; }
+  /// For the collector of cycles.
+  nb::object& callback() { return callback_; }
   void rethrow();
 
   int64_t next_from() const { return next_from_; }
@@ -46,6 +49,7 @@ class Inbox {
 
  private:
   const int capacity_;
+  const bool has_callback_;
   nb::object callback_;
   std::unique_ptr<Stream> stream_;
   std::mutex mutex_;

@@ -59,8 +59,7 @@ nb::dict describe(const std::filesystem::path& file) {
   return made;
 }
 
-nb::dict verify(const std::filesystem::path& file, const std::filesystem::path& folder,
-                nb::object progress) {
+nb::dict verify(const std::filesystem::path& file, const std::string& folder, nb::object progress) {
   const LogVerification result = with_progress(
       std::move(progress),
       [&](const ProgressCallback& callback) { return verify_log(file, folder, callback); });
@@ -90,7 +89,9 @@ LogReplay replay_of(const std::filesystem::path& file, const nb::dict& options) 
   const auto read = [&]<class T>(const char* key, T* value) {
     if (options.contains(key) && !options[key].is_none()) *value = nb::cast<T>(options[key]);
   };
-  read("folder", &replay.folder);
+  std::string folder;
+  read("folder", &folder);
+  replay.folder = folder;
   read("run", &replay.run);
   read("overlays", &replay.overlays);
   read("draw_seed", &replay.draw_seed);
@@ -156,7 +157,7 @@ void bind_logs(nb::module_& m) {
   m.def("start_log", &start, nb::arg("run"), nb::arg("file"), nb::arg("options"),
         nb::keep_alive<0, 1>());
   m.def("describe_log", &describe);
-  m.def("verify_log", &verify, nb::arg("file"), nb::arg("folder") = std::filesystem::path(),
+  m.def("verify_log", &verify, nb::arg("file"), nb::arg("folder") = "",
         nb::arg("progress").none() = nb::none());
   m.def("recover_log", [](const std::filesystem::path& file, const std::filesystem::path& to) {
     const LogRecovery recovery = take(without_gil([&] { return recover_log(file, to); }));
@@ -176,12 +177,10 @@ void bind_logs(nb::module_& m) {
         nb::arg("count"), nb::arg("first_seed") = 1, nb::arg("progress").none() = nb::none());
   m.def(
       "log_checkpoint",
-      [](const std::filesystem::path& log, const std::filesystem::path& folder, int64_t run,
-         double time) {
+      [](const std::filesystem::path& log, const std::string& folder, int64_t run, double time) {
         return take(without_gil([&] { return log_checkpoint(log, folder, run, time); }));
       },
-      nb::arg("log"), nb::arg("folder") = std::filesystem::path(), nb::arg("run") = 0,
-      nb::arg("time") = 0.0);
+      nb::arg("log"), nb::arg("folder") = "", nb::arg("run") = 0, nb::arg("time") = 0.0);
   m.def("checkpoint_world", [](const Checkpoint& checkpoint) { return checkpoint.world(); });
   m.def("export_topic", &export_topic);
   m.def("export_trajectory", [](const std::filesystem::path& log, const std::string& topic) {

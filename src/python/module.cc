@@ -5,6 +5,7 @@
 
 NB_MODULE(_core, m) {
   using namespace gloam::python;
+  nb::set_leak_warnings(false);  // programs end with simulations in their global variables
   m.doc() = "Gloam's C++ API; use the package gloam, which is made on it.";
   m.def("version", &gloam::version, "Version of the library, \"0.1.0\".");
   m.def("configuration", &gloam::configuration,

@@ -40,8 +40,7 @@ void Run::close() {
     static_cast<void>(simulation_.release());
     return;
   }
-  for (const auto& weak : inboxes_)
-    if (const auto inbox = weak.lock()) inbox->close();
+  for (const auto& inbox : open_inboxes()) inbox->close();
   std::unique_ptr<Simulation> simulation = std::move(simulation_);
   const nb::gil_scoped_release released;
   simulation->request_stop();
@@ -53,14 +52,24 @@ void Run::add(const std::shared_ptr<Inbox>& inbox) {
   inboxes_.push_back(inbox);
 }
 
-void Run::restart_inboxes() {
-  const int64_t step = simulation_->stats().step;
-  for (const auto& weak : inboxes_) {
-    if (const auto inbox = weak.lock()) {
-      inbox->clear();
-      inbox->set_next_from(step);
-    }
+std::vector<std::shared_ptr<Inbox>> Run::open_inboxes() const {
+  std::vector<std::shared_ptr<Inbox>> open;
+  for (const auto& weak : inboxes_)
+    if (auto inbox = weak.lock(); inbox != nullptr && inbox->is_open()) open.push_back(inbox);
+  return open;
+}
+
+// Before time jumps: what comes afterwards is of the new run, whose first message comes at once.
+void Run::empty_inboxes() {
+  for (const auto& inbox : open_inboxes()) {
+    without_gil([&] { inbox->stream().flush(); });
+    inbox->clear();
   }
+}
+
+void Run::restart_inboxes() {
+  const int64_t step = simulation_->latest().step();
+  for (const auto& inbox : open_inboxes()) inbox->set_next_from(step);
 }
 
 // What Python wrote between two steps is put back and given to the next step by the hook, where
@@ -108,8 +117,10 @@ void Run::call_hook(const mjModel_* model, mjData_* data) {
   }
   if (!has_hook_.load(std::memory_order_acquire)) return;
   const nb::gil_scoped_acquire acquired;
+  const nb::object hook = hook_;  // kept for as long as it runs
+  if (!hook.is_valid() || hook.is_none()) return;
   try {
-    hook_();
+    hook();
   } catch (nb::python_error& error) {
     const std::lock_guard lock(hook_mutex_);
     if (!hook_error_) hook_error_ = std::make_unique<nb::python_error>(std::move(error));
@@ -138,8 +149,7 @@ void Run::guarded_call(F&& job) {
     error.swap(hook_error_);
   }
   if (error != nullptr) throw std::move(*error);
-  for (const auto& weak : inboxes_)
-    if (const auto inbox = weak.lock()) inbox->rethrow();
+  for (const auto& inbox : open_inboxes()) inbox->rethrow();
   if (thrown) std::rethrow_exception(thrown);
   check(status);
 }
@@ -178,6 +188,8 @@ void Run::pause() {
 void Run::reset() {
   simulation();
   has_written_ = false;
+  without_gil([&] { simulation_->pause(); });
+  empty_inboxes();
   const Status status = without_gil([&] { return simulation_->post({.what = ResetSim{}}); });
   check(status);
   if (is_watched_) look_at_memory();
@@ -199,6 +211,8 @@ void Run::recompile(const World& world) {
 void Run::restore(const Checkpoint& checkpoint) {
   simulation();
   has_written_ = false;
+  without_gil([&] { simulation_->pause(); });
+  empty_inboxes();
   const Status status = interruptible([&] { return simulation_->restore(checkpoint); }, [] {});
   if (is_watched_) look_at_memory();
   look_at_state();

@@ -47,12 +47,16 @@ class Run {
   nb::object step_until(Inbox& inbox);
 
   void add(const std::shared_ptr<Inbox>& inbox);
+  /// For the collector of cycles.
+  nb::object& hook() { return hook_; }
 
  private:
   void give_written();
   void look_at_memory();
   void look_at_state();
   void call_hook(const mjModel_* model, mjData_* data);
+  std::vector<std::shared_ptr<Inbox>> open_inboxes() const;
+  void empty_inboxes();
   void restart_inboxes();
   template <class F>
   void guarded_call(F&& job);

@@ -8,7 +8,7 @@
 namespace gloam::python {
 namespace {
 
-FileAccess access_of(const std::filesystem::path& root, bool strict) {
+FileAccess access_of(const std::string& root, bool strict) {
   FileAccess access;
   access.root = root;
   access.strict = strict;
@@ -32,19 +32,18 @@ void bind_scene(nb::module_& m) {
   nb::class_<Scene>(m, "Scene", "A scene as written: editable until it is compiled.")
       .def_static(
           "load",
-          [](const std::filesystem::path& path, const std::filesystem::path& root, bool strict) {
+          [](const std::filesystem::path& path, const std::string& root, bool strict) {
             return take(without_gil([&] { return load_scene(path, access_of(root, strict)); }));
           },
-          nb::arg("path"), nb::arg("root") = std::filesystem::path(), nb::arg("strict") = false)
+          nb::arg("path"), nb::arg("root") = "", nb::arg("strict") = false)
       .def_static(
           "parse",
-          [](const std::string& text, const std::filesystem::path& folder,
-             const std::filesystem::path& root, bool strict) {
+          [](const std::string& text, const std::filesystem::path& folder, const std::string& root,
+             bool strict) {
             return take(
                 without_gil([&] { return parse_scene(text, folder, access_of(root, strict)); }));
           },
-          nb::arg("text"), nb::arg("folder"), nb::arg("root") = std::filesystem::path(),
-          nb::arg("strict") = false)
+          nb::arg("text"), nb::arg("folder"), nb::arg("root") = "", nb::arg("strict") = false)
       .def("copy", [](const Scene& scene) { return Scene(scene); })
       .def("get", [](const Scene& scene,
                      const std::string& path) { return take(get_option(scene, path)); })

@@ -1,0 +1,5 @@
+"""`python -m gloam ARG…`: the program."""
+
+from gloam.program import main
+
+main()

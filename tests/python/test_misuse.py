@@ -1,0 +1,147 @@
+"""What goes wrong in users' programs: exceptions, never a crash or a dead wait."""
+from __future__ import annotations
+
+import os
+import pickle
+import signal
+import subprocess
+import sys
+import threading
+import time
+from pathlib import Path
+
+import gloam
+import pytest
+from scenes import ball_file, ball_scene
+
+
+def test_use_after_close(tmp_path: Path) -> None:
+    sim = gloam.load(ball_scene(tmp_path))
+    camera = sim.cameras["small"].open(("depth",), tier="direct", spp=1)
+    camera.next()
+    robot = sim.robots["go"]
+    sim.close()
+    sim.close()
+    for call in (sim.step, camera.next, lambda: sim.time, sim.reset, lambda: robot.command(vx=1), lambda: sim.checkpoint(),
+                 lambda: sim.set("sim.duration", 2), sim.pause, sim.run, lambda: sim.subscribe(["/tf"])):
+        with pytest.raises(gloam.Error):
+            call()
+    assert "closed" in repr(sim)
+
+
+def test_wrong_types_raise(tmp_path: Path) -> None:
+    sim = gloam.load(ball_file(tmp_path))
+    for call in (lambda: sim.step(None), lambda: sim.step("x"), lambda: sim.step(-1), lambda: sim.run_until(), lambda: sim.run_until(float("nan")),
+                 lambda: sim.step_until(None), lambda: sim.bodies["ball"].push(force=(1, 2)), lambda: sim.bodies["ball"].push(force="up"),
+                 lambda: sim.joints["elbow"].set(qpos=[1, 2, 3]), lambda: sim.actuators.__getitem__(3), lambda: sim.set(None, 1),
+                 lambda: gloam.load(None), lambda: gloam.load(3), lambda: gloam.load(ball_file(tmp_path), seed=-1),
+                 lambda: gloam.load(ball_file(tmp_path), seed="7"), lambda: gloam.load(ball_file(tmp_path), pace="slow"),
+                 lambda: gloam.load(ball_file(tmp_path), timestep=-1.0), lambda: setattr(sim.actuators["motor"], "control", None),
+                 lambda: sim.restore(None), lambda: sim.recompile(None), lambda: sim.bodies["ball"].set_mocap(((0, 0, 0), (0, 0, 0, 0)))):
+        with pytest.raises((gloam.Error, TypeError, ValueError)):
+            call()
+    sim.step()
+
+
+def test_a_forked_process_is_told(tmp_path: Path) -> None:
+    sim = gloam.load(ball_file(tmp_path))
+    sim.step()
+    read, write = os.pipe()
+    child = os.fork()
+    if child == 0:
+        try:
+            sim.step()
+            os.write(write, b"stepped")
+        except gloam.ForkedError:
+            os.write(write, b"told")
+        finally:
+            os._exit(0)
+    os.close(write)
+    told = os.read(read, 100)
+    os.waitpid(child, 0)
+    assert told == b"told"
+    sim.step()
+
+
+def test_several_threads_share_a_simulation(tmp_path: Path) -> None:
+    with gloam.load(ball_scene(tmp_path)) as sim:
+        errors: list[BaseException] = []
+
+        def work(job: int) -> None:
+            try:
+                for i in range(40):
+                    if job == 0:
+                        sim.step(3)
+                    elif job == 1:
+                        _ = sim.robots["go"].pose, sim.time
+                    elif job == 2:
+                        sim.bodies["go/ball"].push(force=(i, 0, 0))
+                    else:
+                        sim.cameras["small"].render(("depth",), tier="direct", spp=1)
+            except BaseException as error:  # noqa: BLE001
+                errors.append(error)
+
+        threads = [threading.Thread(target=work, args=(job,)) for job in range(4)]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join(60)
+        assert not any(t.is_alive() for t in threads), "no dead wait"
+        assert not errors
+
+
+def test_other_threads_run_while_it_steps(tmp_path: Path) -> None:
+    with gloam.load(ball_file(tmp_path)) as sim:
+        count = 0
+        done = threading.Event()
+
+        def look() -> None:
+            nonlocal count
+            while not done.is_set():
+                count += 1
+                time.sleep(0.001)
+
+        thread = threading.Thread(target=look)
+        thread.start()
+        start = time.monotonic()
+        while time.monotonic() - start < 0.4:
+            sim.step(2000)
+        done.set()
+        thread.join()
+        assert count > 20
+
+
+def test_ctrl_c_stops_a_long_run(tmp_path: Path) -> None:
+    code = f"""
+import gloam, sys
+sim = gloam.load({str(ball_file(tmp_path))!r})
+print("runs", flush=True)
+try:
+    sim.run_until(1e6)
+except KeyboardInterrupt:
+    at = sim.step_count
+    sim.step()
+    print("stopped", sim.step_count - at, flush=True)
+"""
+    with subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE, text=True) as program:
+        assert program.stdout is not None and program.stdout.readline() == "runs\n"
+        time.sleep(0.3)
+        program.send_signal(signal.SIGINT)
+        assert program.stdout.readline() == "stopped 1\n"
+        assert program.wait(20) == 0
+
+
+def test_a_program_that_closes_nothing_ends(tmp_path: Path) -> None:
+    code = f"""
+import gloam
+sim = gloam.load({str(ball_file(tmp_path))!r})
+cam = sim.cameras["front"].open(("rgb",), width=32, height=24, tier="direct", spp=1, callback=lambda frame: None)
+sim.run("fast")
+"""
+    assert subprocess.run([sys.executable, "-c", code], timeout=60, check=False).returncode == 0
+
+
+def test_errors_can_be_sent_between_processes() -> None:
+    error = gloam.InputError("wrong", "a.toml", 3, 4, "mend it")
+    again = pickle.loads(pickle.dumps(error))
+    assert str(again) == str(error) == "a.toml:3:4: wrong (mend it)" and again.line == 3

@@ -1,0 +1,120 @@
+"""Cameras, sensors and LiDARs from Python."""
+from __future__ import annotations
+
+import gc
+from pathlib import Path
+
+import gloam
+import numpy as np
+import pytest
+from scenes import ball_file, ball_scene
+
+FAST = {"tier": "direct", "spp": 1, "denoise": False}
+
+
+def test_frames_come_in_order_at_their_times(tmp_path: Path) -> None:
+    with gloam.load(ball_scene(tmp_path)) as sim:
+        camera = sim.cameras["small"].open(**FAST)
+        for i in range(4):
+            frame = sim.step_until(camera)
+            assert frame.index == i and frame.stamp == pytest.approx(0.02 * i) and sim.time >= frame.delivery - 1e-9
+            assert frame.rgb.shape == (24, 32, 3) and frame.depth.shape == (24, 32) and frame.ids.dtype == np.uint32
+        sim.step(100)  # time goes on without the camera
+        frame = camera.next()
+        assert frame.stamp >= 0.06 + 0.2 - 1e-9 and camera.frame is frame
+
+
+def test_the_picture_after_a_reset_is_the_new_worlds(tmp_path: Path) -> None:
+    with gloam.load(ball_scene(tmp_path)) as sim:
+        camera = sim.cameras["small"].open(**FAST)
+        first = camera.next()
+        while sim.time < 0.4:
+            last = camera.next()
+        assert not np.array_equal(first.depth, last.depth), "the ball has fallen"
+        sim.reset()
+        again = camera.next()
+        assert again.index == 0 and np.array_equal(again.depth, first.depth) and np.array_equal(again.rgb, first.rgb)
+
+
+def test_a_changed_option_changes_the_picture(tmp_path: Path) -> None:
+    with gloam.load(ball_scene(tmp_path)) as sim:
+        camera = sim.cameras["small"].open(**FAST)
+        bright = camera.next().rgb.mean()
+        sim.set("light.sun.illuminance", 200.0)
+        sim.set("render.ev100", 14)
+        dark = sim.cameras["small"].render(**FAST, ev100=14).rgb.mean()
+        sim.set("light.sun.illuminance", 20000.0)
+        light = sim.cameras["small"].render(**FAST, ev100=14).rgb.mean()
+        assert dark < 0.5 * light and bright > 0
+
+
+def test_arrays_share_the_frames_memory_and_keep_it(tmp_path: Path) -> None:
+    with gloam.load(ball_scene(tmp_path)) as sim:
+        frame = sim.step_until(sim.cameras["small"].open(**FAST))
+        one, other = frame.rgb, frame.rgb
+        assert one.__array_interface__["data"][0] == other.__array_interface__["data"][0]
+        assert np.from_dlpack(one).__array_interface__["data"][0] == one.__array_interface__["data"][0]
+        kept = one.copy()
+        for _ in range(5):
+            sim.step_until(sim.cameras["small"])
+    del frame, other, sim
+    gc.collect()
+    assert np.array_equal(one, kept)
+
+
+def test_depth_is_where_the_ball_is(tmp_path: Path) -> None:
+    with gloam.load(ball_file(tmp_path)) as sim:
+        pose = gloam.Pose(np.array([0.0, -3.0, 1.0]), np.array([np.sqrt(0.5), np.sqrt(0.5), 0, 0]))
+        frame = sim.cameras["free"].render(("depth", "segmentation"), width=65, height=65, pose=pose, **FAST)
+        assert frame.depth[32, 32] == pytest.approx(3 - 0.1, abs=1e-3)
+        names = {row["instance"]: row["instance_name"] for row in sim.labels()}
+        assert names[int(frame.ids[32, 32])] == "ball"
+        assert frame.X_WC[:3, 3] == pytest.approx((0, -3, 1))
+
+
+def test_sensors_and_callbacks(tmp_path: Path) -> None:
+    with gloam.load(ball_file(tmp_path)) as sim:
+        sensor = sim.sensors["where"]
+        sim.step(10)
+        assert sensor.values[2] == pytest.approx(sim.joints["free"].qpos[2], abs=0.01)
+        heights: list[float] = []
+        sensor.open(callback=lambda sample: heights.append(sample.values[2]))
+        sim.step(20)
+        sensor._stream.flush()
+        assert len(heights) == 21 and heights == sorted(heights, reverse=True)
+        frames: list[gloam.Frame] = []
+        sim.cameras["front"].open(("rgb",), width=16, height=12, rate=50, callback=frames.append, **FAST)
+        sim.step(100)
+        sim.cameras["front"]._stream.flush()
+        assert len(frames) >= 10 and frames[0].rgb.shape == (12, 16, 3)
+
+
+def test_an_exception_of_a_callback_is_raised(tmp_path: Path) -> None:
+    with gloam.load(ball_file(tmp_path)) as sim:
+        sim.sensors["where"].open(callback=lambda sample: 1 / 0)
+        with pytest.raises(ZeroDivisionError):
+            for _ in range(50):
+                sim.step(2)
+
+
+def test_bad_requests_name_the_nearest(tmp_path: Path) -> None:
+    with gloam.load(ball_file(tmp_path)) as sim:
+        with pytest.raises(gloam.Error, match="did you mean 'rgb'"):
+            sim.cameras["front"].open(("rgbb",))
+        with pytest.raises(gloam.NotFoundError, match="front"):
+            _ = sim.cameras["frnt"]
+        for wrong in ({"width": -1}, {"rate": -5.0}, {"tier": "fastest"}, {"spp": 0}, {"rate": float("nan")}):
+            with pytest.raises((gloam.Error, TypeError)):
+                sim.cameras["front"].open(**wrong)
+
+
+def test_a_viewer_does_not_stand_in_the_way(tmp_path: Path) -> None:
+    with gloam.load(ball_scene(tmp_path)) as sim, sim.view() as page:
+        assert page.url.startswith("http://127.0.0.1:")
+        camera = sim.cameras["small"].open(**FAST)
+        for _ in range(3):
+            camera.next()
+        sim.set("render.spp", 3)
+        camera.next()
+        sim.reset()
+        camera.next()

