@@ -38,6 +38,9 @@ from .scene import Option, Scene, describe  # noqa: E402
 from .simulation import Checkpoint, Simulation, load  # noqa: E402
 from .world import World  # noqa: E402
 
+from . import distribute  # noqa: E402
+from .policy import Policy  # noqa: E402
+
 import importlib.util as _util  # noqa: E402
 
 if _util.find_spec("gymnasium") is not None:  # its environments are registered with the import
@@ -51,7 +54,7 @@ set_log_level = _core.set_log_level
 
 __all__ = [
     "Actuator", "Body", "Camera", "Checkpoint", "ClosedError", "DivergedError", "Error", "ForkedError", "Frame", "InputError", "IoError", "Joint",
-    "Lidar", "Log", "NotFoundError", "Option", "PartialError", "Pose", "Robot", "RunReport", "Scan", "Scene", "Sensor", "Simulation",
-    "StoppedError", "Subscription", "UnsupportedError", "UsageError", "Verification", "World", "check", "configuration", "convert", "describe",
+    "Lidar", "Log", "NotFoundError", "Option", "PartialError", "Policy", "Pose", "Robot", "RunReport", "Scan", "Scene", "Sensor", "Simulation",
+    "StoppedError", "Subscription", "UnsupportedError", "UsageError", "Verification", "World", "check", "configuration", "convert", "describe", "distribute",
     "evaluate", "generate", "home", "load", "make_env", "make_vec_env", "render", "replay", "report", "run", "set_log_level", "set_thread_count", "yaw_quaternion",
 ]
