@@ -40,8 +40,8 @@ class Network:
             raise InputError(f"it is no network that OpenVINO reads: {lines[-1] if lines else error}", str(path)) from None
         self.metadata = self._metadata(model)
         if len(model.inputs) != 1:
-            names = ", ".join(port.get_any_name() for port in model.inputs)
-            raise UnsupportedError(f"the network takes {len(model.inputs)} inputs ({names}), a policy takes its observation alone",
+            listed = ", ".join(port.get_any_name() for port in model.inputs)
+            raise UnsupportedError(f"the network takes {len(model.inputs)} inputs ({listed}), a policy takes its observation alone",
                                    str(path), hint="policies that track a motion by its time are not supported")
         names = [port.get_any_name() for port in model.outputs]
         self._output = next((names.index(name) for name in _ACTIONS if name in names), 0)
