@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -99,6 +100,7 @@ def test_closed_simulations(tmp_path: Path) -> None:
         drive.place((0, 0, 1))
     drive.detach()
     del sim
+    gc.collect()
     with pytest.raises(gloam.UsageError, match="is gone"):
         drive.place((0, 0, 1))
     drive.detach()
