@@ -19,6 +19,7 @@ import sys
 import time
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
+from xml.etree import ElementTree
 
 ROOT = Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(ROOT / "tests"))
@@ -158,12 +159,52 @@ def python_tests(tally, file, only=None):
                   "" if not failed else tail(result.stdout, 80))
 
 
+def api_python(tally):
+    """The interpreter for tests of `import gloam`, with the module built for it; None where that fails."""
+    start = time.time()
+    result = run(["./gloam", "python", "tests/python/env.py"])
+    lines = result.stdout.splitlines()
+    ok = result.returncode == 0 and bool(lines)
+    tally.add("build gloam_python", int(ok), int(not ok), 0, time.time() - start, "" if ok else tail(result.stdout))
+    return lines[-1] if ok else None
+
+
+def api_tests(tally, python, file, mark, only=None):
+    """One file of tests of `import gloam`, in a pytest of its own."""
+    start, report = time.time(), BUILD / "release" / f"{Path(file).stem}.xml"
+    report.unlink(missing_ok=True)
+    result = run([python, "-m", "pytest", "-q", "-m", mark, f"--junitxml={report}", *(["-k", only] if only else []), file], timeout=3600,
+                 GLOAM_BUILT=str(BUILD / "release" / "python" / "gloam"), PYTHONPATH=str(ROOT / "python"))
+    suite = ElementTree.parse(report).getroot().find("testsuite").attrib if report.exists() else {}
+    ran, skipped = int(suite.get("tests", 0)), int(suite.get("skipped", 0))
+    failed = int(suite.get("failures", 0)) + int(suite.get("errors", 0))
+    if result.returncode not in (0, 5) and not failed:  # 5: none of this mark and name
+        failed = ran = 1
+    if ran:
+        tally.add(file, ran - failed - skipped, failed, skipped, time.time() - start, "" if not failed else tail(result.stdout, 80))
+
+
+def slow_api_tests(tally):
+    """Those that take over ten seconds each or fetch a package for themselves."""
+    if python := api_python(tally):
+        for file in api_files():
+            api_tests(tally, python, file, "slow")
+
+
+def api_files():
+    return sorted(str(file.relative_to(ROOT)) for file in (ROOT / "tests" / "python").glob("test_*.py"))
+
+
 def e2e_tests(tally, only=None):
     """Two files at a time, longest first."""
     longest = ["gallery_test", "cli_test", "docs_test"]
     files = sorted((ROOT / "tests" / "e2e").glob("*_test.py"), key=lambda f: (longest + [f.stem]).index(f.stem))
+    parts = [lambda f=file: python_tests(tally, str(f.relative_to(ROOT)), only) for file in files]
+    if python := api_python(tally):
+        mark = "slow or not slow" if only else "not slow"
+        parts += [lambda f=file: api_tests(tally, python, f, mark, only) for file in api_files()]
     with ThreadPoolExecutor(2) as pool:
-        list(pool.map(lambda f: python_tests(tally, str(f.relative_to(ROOT)), only), files))
+        list(pool.map(lambda part: part(), parts))
 
 
 def tracked(*patterns):
@@ -352,6 +393,7 @@ def full(tally):
         "sweeps of running scenes": lambda t: gtest(t, "release", "runtime", labels.only(labels.SWEEPS)),
         "pack": pack,
         "first look at models": lambda t: python_tests(t, "tests/e2e/gallery_models.py"),
+        "slow tests of Python": slow_api_tests,
         "recipes": lambda t: python_tests(t, "tests/e2e/recipes.py"),
         "Mitsuba's mutations": lambda t: python_tests(t, "tests/e2e/mitsuba_mutations.py"),
     }

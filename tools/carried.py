@@ -1,5 +1,6 @@
 """Puts the libraries that a wheel's tree needs into it (tools/wheel.py): copies with names of their own, licences, the C library asked for."""
 import hashlib
+import os
 import re
 import shutil
 import subprocess
@@ -115,8 +116,10 @@ def carry(tree, patchelf):
             options += ["--replace-needed", name, names[name]]
         if file in carried:
             options += ["--set-soname", file.name, "--set-rpath", "$ORIGIN"]
-        elif options and file.parent.name == "lib" and file.parent.parent.name == "oidn":
-            options += ["--set-rpath", "$ORIGIN:$ORIGIN/../.."]
+        elif options:
+            folders = tell([patchelf, "--print-rpath", file]).strip().split(":")
+            folders.append(f"$ORIGIN/{os.path.relpath(package / 'lib' / 'gloam', file.parent)}")
+            options += ["--set-rpath", ":".join(filter(None, dict.fromkeys(folders)))]
         if options:
             tell([patchelf, *options, file])
     copy_licences(files, next(tree.glob("*.dist-info")) / "licenses")

@@ -13,6 +13,7 @@ another package's TBB or OpenSSL in the same process is not taken for ours, and 
 import argparse
 import hashlib
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -38,13 +39,16 @@ def run(command, **options):
 
 
 def interpreter(version):
-    """The Python of that version, else the one that runs this."""
-    if version is None:
-        return sys.executable
-    found = shutil.which(f"python{version}")
-    if found is None or subprocess.run([found, "-c", ""], capture_output=True).returncode != 0:
-        die(f"there is no python{version} on this machine")
-    return found
+    """The Python of that version or path, else the one that runs this."""
+    asked = f"python{version}" if re.fullmatch(r"3\.\d+", version or "") else version or sys.executable
+    for env in (os.environ, {**os.environ, "PYENV_VERSION": str(version)}):  # where pyenv has it, but not as the default
+        try:
+            told = subprocess.run([asked, "-c", "import sys; print(sys.executable)"], capture_output=True, text=True, env=env)
+        except OSError:
+            break
+        if told.returncode == 0:
+            return told.stdout.strip()
+    die(f"there is no {asked} on this machine")
 
 
 def tools(python):
@@ -74,7 +78,7 @@ def packed_by_pip(python, prebuilt, folder):
 def main():
     parser = argparse.ArgumentParser(prog="./gloam wheel", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("folder", nargs="?", type=Path, default=ROOT / "build" / "wheels")
-    parser.add_argument("--python", metavar="VERSION", help="such as 3.12; default: that of python3")
+    parser.add_argument("--python", metavar="VERSION", help="such as 3.12, or an interpreter; default: that of python3")
     parser.add_argument("--prebuilt", type=Path, metavar="FOLDER", help="a build folder that is taken as it stands")
     args = parser.parse_args()
     args.folder.mkdir(parents=True, exist_ok=True)

@@ -62,7 +62,8 @@ def _resolve(node: Any, root: Any) -> Any:
         for key in node["$ref"].removeprefix("#/").split("/"):
             target = target[key]
         node = {**target, **{k: v for k, v in node.items() if k != "$ref"}}
-    for choice in node.get("oneOf", node.get("anyOf", [])) if isinstance(node, dict) else []:
+    choices = node.get("oneOf") or node.get("anyOf") or [] if isinstance(node, dict) else []
+    for choice in choices:
         if "properties" in choice or "items" in choice:
             return {**choice, "description": node.get("description", "")}
     return node
@@ -179,6 +180,11 @@ class Scene:
         """Compiles it. `keyframe`: name or number, of a bare model, that it starts from. Raises InputError with file and line."""
         with watch(progress, f"compiling {self.name}") as told:
             return World(_core.World.compile(self._scene, told, keyframe))
+
+    def _repr_html_(self) -> str:
+        from .notebook import scene_html
+
+        return scene_html(f"Scene '{self.name}'", self.to_toml())
 
     def __repr__(self) -> str:
         return f"<gloam.Scene '{self.name}'>"

@@ -1,5 +1,6 @@
 """Environments made of tables: names of cameras, topics and metrics, in Python and TOML."""
 
+import re
 from pathlib import Path
 
 import numpy as np
@@ -37,6 +38,16 @@ def test_the_example_is_checked_and_its_goal_reached():
     for k in range(100):
         _, _, terminated, truncated, info = env.step(np.zeros(3))
         assert truncated == (k == 99) and not terminated and not info["success"]
+
+
+def test_the_file_of_the_page_works(tmp_path):
+    page = EXAMPLES.parents[1] / "docs" / "python_envs.md"
+    (text,) = re.findall(r"```toml\n(.*?)```", page.read_text(), re.DOTALL)
+    file = tmp_path / "env.toml"
+    file.write_text(text.replace("walk_scene.toml", str(SCENE)))
+    env = make_env(file)
+    env.reset(seed=0)
+    assert env.step(np.array([0.3, 0, 0]))[0]["bearing"].shape == (3, 1)
 
 
 def test_one_and_many_worlds_are_the_same():
@@ -214,3 +225,18 @@ def test_files_that_make_no_sense_are_errors(tmp_path, text):
 def test_a_world_without_a_file_needs_observations(world):
     with pytest.raises(ValueError, match="observations"):
         make_env(world)
+
+
+def test_resets_take_no_memory(world):
+    """A stream of metrics that each reset opened anew took 0.13 MB."""
+
+    def resident():
+        return int(Path("/proc/self/statm").read_text().split()[1]) * 4096
+
+    env = make_env(world, TILT, COMMAND)
+    for _ in range(50):
+        env.reset()
+    before = resident()
+    for _ in range(200):
+        env.reset()
+    assert resident() - before < 8e6
