@@ -467,7 +467,15 @@ def latency(quick):
                       f"{line['messages']} messages, {line['dropped']:.0f} lost")
 
 
+def python(quick):
+    """a call of step() from Python against the same call from C++, in turn; the arrays of a frame"""
+    data = run_json(ROOT / "gloam", "python", ROOT / "bench" / "python_overhead.py", BIN / "bench_step_calls")
+    for scene, row in data["steps"].items():
+        yield at_most(f"µs that Python adds to a step, {scene}", row["python_adds_us"], 5, f"median of 7 turns; C++ {row['cpp_us']:.1f} µs a step")
+    yield at_most("µs to the arrays, pose and matrix of a frame of 640x480", data["frame_us"], 50, "median of 30 frames")
+
+
 # With the seconds that each takes on two cores: the first estimate of the time left.
 ALL = {sim_step_rate: 15, sim_beside_cameras: 60, path_tier: 60, equal_error: 600, direct_tier: 90, direct_places: 60, view: 40, fast_tier: 400, truth: 40, load_time: 120, import_time: 60,
        first_picture: 15, adaptive_sampling: 120, lidar: 25, environments: 60, hfield: 25, gas: 20,
-       effects: 90, all_effects: 75, log_rate: 60, record_cost: 300, latency: 330}
+       effects: 90, all_effects: 75, log_rate: 60, record_cost: 300, latency: 330, python: 60}

@@ -17,7 +17,7 @@ if _built:
 
 from gloam import _core  # noqa: E402
 
-from .batch import check, convert, evaluate, render, report, run  # noqa: E402
+from .batch import check, convert, evaluate, generate, render, report, run  # noqa: E402
 from .cameras import Camera, Frame, Lidar, Scan, Sensor, Subscription  # noqa: E402
 from .elements import Actuator, Body, Joint, Pose, Robot, yaw_quaternion  # noqa: E402
 from .errors import (  # noqa: E402
@@ -53,5 +53,5 @@ __all__ = [
     "Actuator", "Body", "Camera", "Checkpoint", "ClosedError", "DivergedError", "Error", "ForkedError", "Frame", "InputError", "IoError", "Joint",
     "Lidar", "Log", "NotFoundError", "Option", "PartialError", "Pose", "Robot", "RunReport", "Scan", "Scene", "Sensor", "Simulation",
     "StoppedError", "Subscription", "UnsupportedError", "UsageError", "Verification", "World", "check", "configuration", "convert", "describe",
-    "evaluate", "home", "load", "make_env", "make_vec_env", "render", "replay", "report", "run", "set_log_level", "set_thread_count", "yaw_quaternion",
+    "evaluate", "generate", "home", "load", "make_env", "make_vec_env", "render", "replay", "report", "run", "set_log_level", "set_thread_count", "yaw_quaternion",
 ]

@@ -57,6 +57,11 @@ def _compiled(source: Any, settings: Mapping[str, Any] | None, outputs: Sequence
     return scene.compile(progress)
 
 
+def generate(kind: str, folder: PathLike = ".", **parameters: Any) -> Scene:
+    """A Scene of a generated place: generate("house", seed=3, rooms=4), "warehouse", "office", "hallway" … (docs/environments.md)."""
+    return Scene.from_dict({"environment": {kind: parameters}}, folder)
+
+
 def convert(mesh: PathLike, progress: ProgressLike = None) -> dict[str, Any]:
     """Colliders, volume, mass of a mesh as an [[object]] gets them, and how near they are to it."""
     with watch(progress, f"converting {Path(mesh).name}") as told:

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar, cast
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from gloam import _core
 
@@ -225,10 +225,11 @@ class Camera(Source):
         self._opened().set_pose(pose)
 
     def render(self, outputs: Sequence[str] = _DEFAULT_OUTPUTS, *, width: int = 0, height: int = 0, pose: Pose | None = None,
-               **render: Any) -> Frame:
-        """A picture of the present instant, sharp, without a stream."""
+               qpos: ArrayLike | None = None, **render: Any) -> Frame:
+        """A picture of the present instant, sharp, without a stream; with `qpos`, (nq,), of the scene as it stands in that state."""
         options = {"camera": self.name, "outputs": list(outputs), "width": width, "height": height, "pose": pose, **render}
-        return Frame(self._sim._painter().paint(self._sim._core, options))
+        core = self._sim._core if qpos is None else self._sim._posed(qpos)
+        return Frame(self._sim._painter().paint(core, options))
 
 
 class Lidar(Source):

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 PathLike = str | os.PathLike[str]
 Function = Callable[["Simulation", int, Path], Mapping[str, Any] | None]
-TOPICS = ("/clock", "/tf*", "/*/joint_states", "/*/odom")  # that logs of rollouts have: the motion
+TOPICS = ("/clock", "/tf*")  # that logs of rollouts have beside states and inputs: enough to step them again and see all else
 
 
 @dataclass(frozen=True)

@@ -341,10 +341,8 @@ class Robot(Element):
         joint = int(memory.array("body_jntadr")[root])
         if joint < 0 or memory.array("jnt_type")[joint] != 0:
             raise UsageError(f"robot '{self.name}' stands fixed: it has no free root")
-        name = self._sim._world.info["joints"][joint]
         turn = yaw_quaternion(yaw) if quat is None else _sized(quat, 4, "quat")
         handle = next(j for j in self._info["joints"] if j.id == joint)
-        del name
         self._sim._core.set_joint_state(handle, np.concatenate([_sized(position, 3, "position"), turn]), np.zeros(6))
 
     @contextmanager

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any, Literal
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from gloam import _core
 
@@ -62,6 +63,7 @@ class Simulation:
         self._solver = _core.Solver()
         self._renderer: Any = None
         self._leases: dict[str, Any] = {}
+        self._other: Simulation | None = None
         self._log: Any = None
         self._metrics: Any = None
         self.joints: Named[Joint] = Named("joint", lambda: self._world.joints, lambda n: Joint(self, n))
@@ -286,6 +288,16 @@ class Simulation:
             self._renderer = _core.Painter(self._core_world)
         return self._renderer
 
+    def _posed(self, qpos: ArrayLike) -> Any:
+        """A run of its own that stands, at rest, in another state of the same World: a step so short that nothing moves takes it there."""
+        if self._other is None or self._other.world is not self._world:
+            self._other = Simulation(self._world, self.seed, timestep=1e-9)
+        other = self._other
+        other.reset()
+        other.memory.array("qpos")[:] = np.asarray(qpos, dtype=np.float64).reshape(other.memory.array("qpos").shape)
+        other.step()
+        return other._core
+
     def _lease_of_joint(self, name: str) -> Any:
         return self._lease_where(lambda robot: name in robot.joints)
 
@@ -305,6 +317,8 @@ class Simulation:
             if self._log is not None:
                 self._log.finish()
             self._core.close()
+        if self._other is not None:
+            self._other.close()
 
     def __enter__(self) -> Simulation:
         return self

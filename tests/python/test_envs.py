@@ -1,5 +1,8 @@
 """Environments: gymnasium's checks, and that worlds are what they would be alone."""
 
+import subprocess
+import sys
+
 import gymnasium as gym
 import numpy as np
 import pytest
@@ -317,3 +320,90 @@ def test_options_of_reset_are_checked():
 def test_a_vector_of_zero_worlds_is_an_error():
     with pytest.raises(ValueError, match="at least one"):
         VectorEnv(Reach(), num_envs=0)
+
+
+def test_episodes_in_a_log_replay_to_the_same_states(tmp_path):
+    env = Env(PointGoal(size=(4, 3)))
+    env.reset(seed=3)
+    with env.sim.record(tmp_path / "run.mcap"):
+        env.reset(seed=3)
+        for _ in range(3):
+            for _ in range(4):
+                env.step(np.array([1.0, 0.3]))
+            env.reset()  # a goal and a place of its own
+    verified = gloam.replay(tmp_path / "run.mcap").verify()
+    assert verified.differing_steps == 0 and verified.steps > 150
+
+
+@pytest.mark.parametrize("mode", ["Disabled", "NextStep", "SameStep"])
+def test_physics_that_diverges_ends_its_own_episode_alone(mode):
+    def act(sim, action):
+        if action[0] > 0.5:
+            sim.joints["arm/pan"].set(qvel=[1e200])
+
+    actions = {"function": act, "low": [0], "high": [1]}
+    env = gloam.make_vec_env(Reach().scene(), 3, {"q": {"joints": "arm"}}, actions, autoreset_mode=mode)
+    env.reset(seed=1)
+    _, _, terminated, _, infos = env.step(np.array([[0], [1], [0]]))
+    assert terminated.tolist() == [False, True, False]
+    diverged = infos["final_info"]["diverged"] if mode == "SameStep" else infos["diverged"]
+    assert diverged.tolist() == [False, True, False]
+    if mode == "Disabled":
+        env.reset(options={"reset_mask": terminated})
+    for _ in range(3):
+        observation, _, terminated, *_ = env.step(np.zeros((3, 1)))
+        assert not terminated.any() and np.isfinite(observation["q"]).all()
+
+
+def test_a_page_may_be_open_while_worlds_step_and_reset():
+    env = vector("Reach", n=2)
+    env.reset(seed=0)
+    with env.unwrapped.sims[0].view():
+        for _ in range(5):
+            env.step(np.zeros((2, 6)))
+        env.reset()
+        env.step(np.zeros((2, 6)))
+    env.close()
+
+
+def test_the_import_registers_the_environments():
+    program = "import gloam, gymnasium as gym; gym.make_vec('gloam/Reach-v0', num_envs=2).reset(seed=0)"
+    subprocess.run([sys.executable, "-c", program], check=True, timeout=60)
+
+
+@pytest.mark.parametrize("mode", ["sync", "async"])
+def test_gymnasiums_own_vectors_give_the_same(mode):
+    own = gym.make_vec("gloam/Reach-v0", num_envs=2, vectorization_mode=mode)
+    ours = vector("Reach", n=2)
+    assert same(own.reset(seed=3)[0], ours.reset(seed=3)[0])
+    for _ in range(3):
+        action = np.full((2, 6), 0.3, dtype=np.float32)
+        assert same(own.step(action)[0], ours.step(action)[0])
+    own.close()
+
+
+def test_a_house_has_ways_to_its_goals():
+    task = PointGoal("lidar", place="house", beams=8, house_seed=3, rooms=3)
+    env = Env(task)
+    for seed in range(3):
+        _, info = env.reset(seed=seed)
+        position = env.sim.robots["cart"].pose.p
+        space = task.free_space(env.sim.world)
+        assert space.is_free(position) and 0.5 < info["distance"] <= 4.0
+        before = position.copy()
+        for _ in range(3):
+            env.step(np.array([0.5, 0.0]))
+        after = env.sim.robots["cart"].pose.p
+        assert np.linalg.norm(after - before) > 0.02 and abs(after[2]) < 0.03  # it stands on the floor, and is free
+
+
+def test_the_quadruped_stands_and_sees_its_last_action():
+    env = gym.make("gloam/QuadrupedVelocity-v0", noisy=False)
+    env.reset(seed=0, options={"goal": (0.0, 0.0, 0.0)})
+    for k in range(50):
+        action = np.full(12, 0.01 * (k % 3), dtype=np.float32)
+        observation, reward, terminated, _, info = env.step(action)
+        assert not terminated and not info["fallen"]
+        np.testing.assert_array_equal(observation[-12:], action)
+    assert reward > 0.8 * 1.5 * 0.02  # of the most that there is
+    assert observation[8] == pytest.approx(-1, abs=0.02)  # gravity is down

@@ -1,5 +1,6 @@
 """Environments made of tables: names of cameras, topics and metrics, in Python and TOML."""
 
+import re
 from pathlib import Path
 
 import numpy as np
@@ -37,6 +38,16 @@ def test_the_example_is_checked_and_its_goal_reached():
     for k in range(100):
         _, _, terminated, truncated, info = env.step(np.zeros(3))
         assert truncated == (k == 99) and not terminated and not info["success"]
+
+
+def test_the_file_of_the_page_works(tmp_path):
+    page = EXAMPLES.parents[1] / "docs" / "python_envs.md"
+    (text,) = re.findall(r"```toml\n(.*?)```", page.read_text(), re.DOTALL)
+    file = tmp_path / "env.toml"
+    file.write_text(text.replace("walk_scene.toml", str(SCENE)))
+    env = make_env(file)
+    env.reset(seed=0)
+    assert env.step(np.array([0.3, 0, 0]))[0]["bearing"].shape == (3, 1)
 
 
 def test_one_and_many_worlds_are_the_same():

@@ -72,6 +72,23 @@ def test_depth_is_where_the_ball_is(tmp_path: Path) -> None:
         assert frame.X_WC[:3, 3] == pytest.approx((0, -3, 1))
 
 
+def test_a_picture_of_a_given_state(tmp_path: Path) -> None:
+    with gloam.load(ball_scene(tmp_path)) as sim:
+        qpos = sim.memory.array("qpos").copy()
+        there = sim.cameras["small"].render(("depth",), **FAST)
+        qpos[:3] = (0.3, 0, 1.2)
+        other = sim.cameras["small"].render(("depth",), qpos=qpos, **FAST)
+        assert not np.array_equal(other.depth, there.depth)
+        assert sim.step_count == 0 and np.array_equal(sim.cameras["small"].render(("depth",), **FAST).depth, there.depth)
+        sim.joints["go/free"].qpos[:] = qpos[:7]
+        sim.step()
+        moved = sim.cameras["small"].render(("depth",), **FAST).depth
+        seen = np.isfinite(moved) & np.isfinite(other.depth)
+        assert np.median(np.abs(moved[seen] - other.depth[seen])) < 1e-3
+        with pytest.raises(ValueError):
+            sim.cameras["small"].render(("depth",), qpos=[1.0, 2.0], **FAST)
+
+
 def test_sensors_and_callbacks(tmp_path: Path) -> None:
     with gloam.load(ball_file(tmp_path)) as sim:
         sensor = sim.sensors["where"]

@@ -1,8 +1,8 @@
 """Ray as gloam.distribute uses it: a cluster that is there, or one on this machine for the time of a call."""
 from __future__ import annotations
 
+import importlib
 import os
-import sys
 import time
 import warnings
 from collections.abc import Callable, Iterator
@@ -15,19 +15,32 @@ from .manifest import Manifest
 
 Tell = Callable[[str, float, float, float], Any] | None  # task, share done, seconds, seconds left; False stops
 _LOOK = 0.2  # [s] between looks at signals and progress
-# Ray reads it when it is imported: without clusters of several machines all its processes listen on loopback.
-_LOOPBACK_ONLY = "RAY_ENABLE_WINDOWS_OR_OSX_CLUSTER"
+_ONE_MACHINE = "RAY_ENABLE_WINDOWS_OR_OSX_CLUSTER"  # 0: all its processes listen on loopback
 _STORE = 100 << 20  # [bytes] of shared memory: results travel by files
 
 
-def _ray(is_local: bool) -> Any:
-    if is_local and "ray" not in sys.modules:
-        os.environ.setdefault(_LOOPBACK_ONLY, "0")
+def _ray() -> Any:
     try:
-        import ray
+        return importlib.import_module("ray")
     except ImportError as error:
         raise ImportError("gloam.distribute runs tasks through the package 'ray', which is not installed: pip install ray") from error
-    return ray
+
+
+@contextmanager
+def _loopback_only() -> Iterator[None]:
+    """Ray's processes that are started in the block listen on loopback: it does so where it thinks of no other machines."""
+    constants = importlib.import_module("ray._private.ray_constants")
+    before = os.environ.get(_ONE_MACHINE), getattr(constants, "ENABLE_RAY_CLUSTER", None)
+    os.environ[_ONE_MACHINE] = "0"  # for the processes that it starts
+    setattr(constants, "ENABLE_RAY_CLUSTER", False)  # for this one, which has read the variable when it imported ray
+    try:
+        yield
+    finally:
+        setattr(constants, "ENABLE_RAY_CLUSTER", before[1])
+        if before[0] is None:
+            del os.environ[_ONE_MACHINE]
+        else:
+            os.environ[_ONE_MACHINE] = before[0]
 
 
 @contextmanager
@@ -36,7 +49,7 @@ def cluster(address: str | None, workers: int | None) -> Iterator[Any]:
 
     The new one listens on loopback only, has no dashboard and reports nothing.
     """
-    ray = _ray(address is None)
+    ray = _ray()
     if ray.is_initialized():
         yield ray
         return
@@ -45,11 +58,11 @@ def cluster(address: str | None, workers: int | None) -> Iterator[Any]:
     if address is not None:
         ray.init(address=address, log_to_driver=False)
     else:
-        if os.environ.get(_LOOPBACK_ONLY) != "0":
-            warnings.warn("ray was imported before: it will listen on all network cards; call gloam.distribute before you import it, or set "
-                          f"{_LOOPBACK_ONLY}=0", stacklevel=4)
-        ray.init(address="local", num_cpus=workers or os.cpu_count() or 1, num_gpus=0, include_dashboard=False, log_to_driver=False,
-                 configure_logging=False, object_store_memory=_STORE)
+        with _loopback_only():
+            ray.init(address="local", num_cpus=workers or os.cpu_count() or 1, num_gpus=0, include_dashboard=False,
+                     log_to_driver=False, configure_logging=False, object_store_memory=_STORE)
+        if any(not node["NodeManagerAddress"].startswith("127.") for node in ray.nodes()):
+            warnings.warn("this version of ray listens on all network cards", stacklevel=4)
     try:
         yield ray
     finally:
@@ -116,10 +129,11 @@ def run_tasks(ray: Any, manifest: Manifest, job: Job, cpus: int, retries: int, t
 
 def _send(ray: Any, job: Job) -> Any:
     try:
-        return ray.put(job)
-    except (TypeError, AttributeError) as error:
+        ray.cloudpickle.dumps(job)
+    except Exception as error:  # of any object's own making
         raise UsageError(f"the function cannot be sent to workers: {str(error).splitlines()[0]}",
                          hint="it may not hold open files, simulations or locks") from None
+    return ray.put(job)
 
 
 def _outcome(ray: Any, reference: Any) -> Failure | None:

@@ -1,6 +1,7 @@
 """A network of an ONNX file, run by OpenVINO: f32, one thread, so that the same input gives the same output."""
 from __future__ import annotations
 
+import importlib
 from pathlib import Path
 from typing import Any
 
@@ -14,11 +15,10 @@ _ACTIONS = ("actions", "action", "mean")  # outputs of these names are preferred
 
 def _openvino() -> Any:
     try:
-        import openvino
+        return importlib.import_module("openvino")
     except ImportError as error:
         raise ImportError("gloam.Policy runs networks through the package 'openvino', which is not installed: "
                           "pip install openvino") from error
-    return openvino
 
 
 class Network:
@@ -48,10 +48,10 @@ class Network:
         self.inputs = self._fix_batch(model, path)
         config = {"INFERENCE_PRECISION_HINT": "f32", "INFERENCE_NUM_THREADS": 1, "NUM_STREAMS": 1}
         self._request = core.compile_model(model, "CPU", config).create_infer_request()
-        shape = model.outputs[self._output].partial_shape
-        if not shape.is_static or len(shape) != 2 or shape.to_shape()[0] != 1:
-            raise InputError(f"output '{names[self._output]}' has the shape {shape}, not (1, joints)", str(path))
-        self.outputs = int(shape.to_shape()[1])
+        result = model.outputs[self._output].partial_shape
+        if not result.is_static or len(result) != 2 or result.to_shape()[0] != 1:
+            raise InputError(f"output '{names[self._output]}' has the shape {result}, not (1, joints)", str(path))
+        self.outputs = int(result.to_shape()[1])
 
     @staticmethod
     def _metadata(model: Any) -> dict[str, str]:

@@ -1,4 +1,4 @@
-"""Environments of Gymnasium (docs/python_envs.md). Needs the package `gymnasium`, 1.1 or newer."""
+"""Environments of Gymnasium (docs/python_envs.md). Needs the package `gymnasium`, 1.4 or newer."""
 
 from gloam.envs.declared import DeclaredTask, make_env, make_vec_env
 from gloam.envs.noise import Gaussian, Noise, Uniform

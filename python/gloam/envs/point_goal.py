@@ -161,7 +161,7 @@ class _PointGoalWorld(TaskWorld):
         self._goal = np.zeros(2)
         self._field = np.zeros((1, 1))
         self._left = self._shortest = self._driven = 0.0
-        self._last = np.zeros(2)
+        self._last = self._position = np.zeros(2)
 
     def begin(self, rng: np.random.Generator, options: Mapping[str, Any]) -> None:
         """options: "goal" (x, y) and "start" (x, y, yaw) [m, rad] in place of drawn ones."""
@@ -184,6 +184,7 @@ class _PointGoalWorld(TaskWorld):
 
     def observe(self) -> dict[str, Array]:
         pose = self._cart.pose
+        self._position = pose.p[:2]
         dx, dy = self._goal - pose.p[:2]
         bearing = math.atan2(dy, dx) - pose.yaw
         goal = np.array([math.hypot(dx, dy), math.cos(bearing), math.sin(bearing)])
@@ -191,7 +192,7 @@ class _PointGoalWorld(TaskWorld):
 
     def judge(self, action: Array) -> Outcome:
         """Reward: the way gained [m], less 0.01, and 5 for the goal."""
-        position = self._cart.pose.p[:2]
+        position = self._position
         self._driven += float(np.linalg.norm(position - self._last))
         self._last = position.copy()
         left = self._space.distance(self._field, position)

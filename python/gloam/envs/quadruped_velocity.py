@@ -118,6 +118,7 @@ class _QuadrupedWorld(TaskWorld):
         self._goal = np.zeros(3)
         self._fixed: Array | None = None
         self._renew = 0.0
+        self._motion = (np.zeros(3), np.zeros(3), np.zeros(3), 0.0)
         self._action, self._before = np.zeros(JOINTS), np.zeros(JOINTS)
 
     def begin(self, rng: np.random.Generator, options: Mapping[str, Any]) -> None:
@@ -138,11 +139,14 @@ class _QuadrupedWorld(TaskWorld):
         self._goal = self._rng.uniform(low, high) if self._fixed is None else self._fixed
         self._renew = now + self._task.hold
 
+    def decide(self, action: Array) -> None:
+        self._before, self._action = self._action, np.array(action)
+
     def apply(self, action: Array) -> None:
         for joint, target in zip(self._joints, self._stance + ACTION_SCALE * np.asarray(action), strict=True):
             joint.set_goal(float(target))
 
-    def _motion(self) -> tuple[Array, Array, Array, float]:
+    def _measured(self) -> tuple[Array, Array, Array, float]:
         """Velocity, angular velocity, direction of gravity, all in the trunk's frame, and its height [m]."""
         pose = self._robot.pose
         inverse = pose.R.T
@@ -150,7 +154,7 @@ class _QuadrupedWorld(TaskWorld):
         return inverse @ self._robot.velocity, inverse @ self._robot.angular_velocity, down, float(pose.p[2])
 
     def observe(self) -> dict[str, Array]:
-        velocity, turning, down, _ = self._motion()
+        velocity, turning, down, _ = self._motion = self._measured()
         return {
             "velocity": velocity,
             "angular_velocity": turning,
@@ -163,8 +167,7 @@ class _QuadrupedWorld(TaskWorld):
 
     def judge(self, action: Array) -> Outcome:
         """Tracking of the goal, less what is jerky, tilted or bounces; all per second, times the control interval."""
-        velocity, turning, down, height = self._motion()
-        self._before, self._action = self._action, np.array(action)
+        velocity, turning, down, height = self._motion
         wrong = float(np.sum((self._goal[:2] - velocity[:2]) ** 2))
         turned_wrong = float((self._goal[2] - turning[2]) ** 2)
         has_fallen = -down[2] < FALLEN or height < LOWEST

@@ -77,7 +77,7 @@ class _ReachWorld(TaskWorld):
         self._home = np.array(self._arm.qpos)
         self._limits = np.array([[-2.9, -1.6, -0.2, -2.9, -1.9, -2.9], [2.9, 1.9, 2.6, 2.9, 1.9, 2.9]])
         self._target = self._home.copy()
-        self._goal = np.zeros(3)
+        self._goal = self._tool_position = np.zeros(3)
         self._held = 0
 
     def begin(self, rng: np.random.Generator, options: Mapping[str, Any]) -> None:
@@ -96,7 +96,7 @@ class _ReachWorld(TaskWorld):
         self._arm.controls = self._target
 
     def observe(self) -> dict[str, Array]:
-        tool = self._tool.pose.p
+        tool = self._tool_position = self._tool.pose.p
         return {
             "joint_position": np.array(self._arm.qpos),
             "joint_velocity": np.array(self._arm.qvel),
@@ -107,7 +107,7 @@ class _ReachWorld(TaskWorld):
 
     def judge(self, action: Array) -> Outcome:
         """Reward: less the distance [m] and a little of the action, 1 at the goal."""
-        distance = float(np.linalg.norm(self._goal - self._tool.pose.p))
+        distance = float(np.linalg.norm(self._goal - self._tool_position))
         is_near = distance < self._task.radius
         self._held = self._held + 1 if is_near else 0
         is_done = self._held >= self._task.hold

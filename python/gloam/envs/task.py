@@ -37,6 +37,9 @@ class TaskWorld(ABC):
     def begin(self, rng: np.random.Generator, options: Mapping[str, Any]) -> None:
         """Begins an episode: the simulation is at its initial state; places and draws what the task draws."""
 
+    def decide(self, action: Array) -> None:
+        """Told of an action at the beginning of its control step, before it is on its way to the robot."""
+
     @abstractmethod
     def apply(self, action: Array) -> None:
         """Gives an action to the robot, to be in force from the next physics step on."""
@@ -47,7 +50,7 @@ class TaskWorld(ABC):
 
     @abstractmethod
     def judge(self, action: Array) -> Outcome:
-        """Reward and end of the control step that has just been taken with `action`."""
+        """Reward and end of the control step that was taken with `action`; `observe` has been called before."""
 
     def start_info(self) -> dict[str, Any]:
         """`info` of a reset."""

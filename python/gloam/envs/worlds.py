@@ -136,7 +136,7 @@ class Worlds:
     def _begin(self, slot: Slot, options: Mapping[str, Any]) -> dict[str, Array]:
         if self.settings.randomize:
             drawn = self.settings.draw(slot.rng)
-            slot.sim.set(drawn)
+            slot.sim.set(drawn, progress=False)
         slot.sim.reset()
         slot.actions.reset(slot.rng)
         slot.bound.begin(slot.rng, options)
@@ -149,6 +149,7 @@ class Worlds:
     def _advance(self, slot: Slot, action: Array) -> tuple[dict[str, Array], Outcome]:
         """One control step. Physics that leaves the finite numbers ends the episode, with the last good observation."""
         try:
+            slot.bound.decide(action)
             slot.actions.advance(action, self.steps, slot.bound.apply, slot.sim.step)
             slot.last = slot.bound.observe()
             return slot.last, slot.bound.judge(action)

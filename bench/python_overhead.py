@@ -1,0 +1,66 @@
+#!/usr/bin/env python3
+"""What Python adds to Gloam: a step, a frame, a picture's arrays. `./gloam python bench/python_overhead.py`
+
+The C++ side is bench_step_calls, which makes the same calls without Python, in turn with it, so that both see the same machine.
+"""
+from __future__ import annotations
+
+import json
+import statistics
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import gloam
+
+ROOT = Path(gloam.home())
+STEPS, ROUNDS = 2000, 7
+
+
+def python_step(sim: gloam.Simulation) -> float:
+    """Mean time of a call of step() [µs]."""
+    sim.step(200)
+    start = time.perf_counter()
+    for _ in range(STEPS):
+        sim.step()
+    return (time.perf_counter() - start) / STEPS * 1e6
+
+
+def frame_access() -> float:
+    """Median time to take the arrays of a 640x480 frame that has come, with its pose and matrix [µs]."""
+    sim = gloam.load(ROOT / "examples" / "two_robots.toml")
+    camera = sim.cameras["chase"].open(("rgb", "depth"), width=640, height=480, tier="direct", spp=1, denoise=False)
+    camera.next()
+    times = []
+    for _ in range(30):
+        sim.run_until(step=sim.step_count + 60)
+        camera._stream.flush()
+        start = time.perf_counter()
+        frame = gloam.Frame(camera._stream.pop())
+        arrays = frame.rgb, frame.depth, frame.X_WC, frame.K, frame.stamp
+        times.append((time.perf_counter() - start) * 1e6)
+        assert arrays[0].shape == (480, 640, 3)
+    sim.close()
+    return statistics.median(times)
+
+
+def main() -> None:
+    program = Path(sys.argv[1]) if len(sys.argv) > 1 else ROOT / "build" / "release" / "bin" / "bench_step_calls"
+    rows = {}
+    for name in ("assets/robots/quadruped/quadruped.xml", "examples/two_robots.toml", "examples/house.toml"):
+        differences, pure = [], []
+        with gloam.load(ROOT / name) as sim:
+            for _ in range(ROUNDS):
+                told = subprocess.run([program, ROOT / name, str(STEPS)], check=True, text=True, stdout=subprocess.PIPE).stdout
+                bare = json.loads(told)["microseconds"]
+                sim.reset()
+                mine = python_step(sim)
+                differences.append(mine - bare)
+                pure.append(bare)
+        rows[name] = {"cpp_us": round(statistics.median(pure), 2), "python_adds_us": round(statistics.median(differences), 2)}
+    print(json.dumps({"steps": rows, "frame_us": round(frame_access(), 2)}))
+
+
+if __name__ == "__main__":
+    main()
