@@ -15,7 +15,10 @@ ROOT = Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT / "python"), str(ROOT / "tests")]
 os.environ.setdefault("GLOAM_BUILT", str(ROOT / "build" / "release" / "python" / "gloam"))
 
+import fetch_data  # noqa: E402
 from e2e.support import PENDULUM  # noqa: E402
+
+os.environ.setdefault("GLOAM_TEST_DATA", str(fetch_data.default_folder()))
 
 settings.register_profile("gloam", deadline=None, derandomize=True, database=None)
 settings.load_profile("gloam")
