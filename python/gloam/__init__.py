@@ -34,9 +34,11 @@ from .errors import (  # noqa: E402
     UsageError,
 )
 from .logs import Log, RunReport, Verification, replay  # noqa: E402
+from .policy import Policy  # noqa: E402
 from .scene import Option, Scene, describe  # noqa: E402
 from .simulation import Checkpoint, Simulation, load  # noqa: E402
 from .world import World  # noqa: E402
+from . import distribute  # noqa: E402
 
 import importlib.util as _util  # noqa: E402
 
@@ -51,7 +53,7 @@ set_log_level = _core.set_log_level
 
 __all__ = [
     "Actuator", "Body", "Camera", "Checkpoint", "ClosedError", "DivergedError", "Error", "ForkedError", "Frame", "InputError", "IoError", "Joint",
-    "Lidar", "Log", "NotFoundError", "Option", "PartialError", "Pose", "Robot", "RunReport", "Scan", "Scene", "Sensor", "Simulation",
+    "Lidar", "Log", "NotFoundError", "Option", "PartialError", "Policy", "Pose", "Robot", "RunReport", "Scan", "Scene", "Sensor", "Simulation",
     "StoppedError", "Subscription", "UnsupportedError", "UsageError", "Verification", "World", "check", "configuration", "convert", "describe",
-    "evaluate", "generate", "home", "load", "make_env", "make_vec_env", "render", "replay", "report", "run", "set_log_level", "set_thread_count", "yaw_quaternion",
+    "distribute", "evaluate", "generate", "home", "load", "make_env", "make_vec_env", "render", "replay", "report", "run", "set_log_level", "set_thread_count", "yaw_quaternion",
 ]

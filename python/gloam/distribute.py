@@ -3,9 +3,10 @@
     gloam.distribute.rollouts("house.toml", policy, 100, out="rollouts", robot="go2", command=(0.5, 0, 0), duration=5)
     gloam.distribute.variants("run.mcap", "skies.toml", 1000, out="skies")
 
-One task is one folder OUT/0000, OUT/0001 …, made by a seed of its own. The same call goes on where it was stopped, however it was: each task
-is done exactly once. What a task makes does not depend on the number of workers.
+One task is one folder OUT/0000, OUT/0001 …, made by a seed of its own. The same call goes on where it was stopped,
+however it was: each task is done exactly once. What a task makes does not depend on the number of workers.
 """
+
 from __future__ import annotations
 
 import hashlib
@@ -28,12 +29,16 @@ if TYPE_CHECKING:
 
 PathLike = str | os.PathLike[str]
 Function = Callable[["Simulation", int, Path], Mapping[str, Any] | None]
-TOPICS = ("/clock", "/tf*")  # that logs of rollouts have beside states and inputs: enough to step them again and see all else
+TOPICS = (
+    "/clock",
+    "/tf*",
+)  # that logs of rollouts have beside states and inputs: enough to step them again and see all else
 
 
 @dataclass(frozen=True)
 class Task:
-    """A task of a folder. `error`: why it is not there, "" if it is. `values`: its task.json, as steps, time [s], hash, result."""
+    """A task of a folder. `error`: why it is not there, "" if it is. `values`: its task.json, as steps, time [s],
+    hash, result."""
 
     index: int
     seed: int
@@ -93,7 +98,9 @@ def _scene_source(scene: Any) -> tuple[SceneSource, dict[str, str]]:
     if isinstance(scene, Scene):
         folder = scene.file.parent if str(scene.file) not in ("", ".") else Path()
         text = scene.to_toml()
-        return SceneSource(text=text, folder=str(folder.absolute())), {"scene": hashlib.sha256(text.encode()).hexdigest()}
+        return SceneSource(text=text, folder=str(folder.absolute())), {
+            "scene": hashlib.sha256(text.encode()).hexdigest()
+        }
     if not isinstance(scene, (str, os.PathLike)):
         raise TypeError(f"a scene is a path, a Scene or a dict, not a {type(scene).__name__}")
     path = Path(scene).absolute()
@@ -115,8 +122,16 @@ def _drive_print(drive: Any) -> dict[str, str]:
     return {"function": hashlib.sha256(text.encode()).hexdigest()}
 
 
-def _do(job: Job, manifest: Manifest, address: str | None, workers: int | None, cpus: int, retries: int, required: bool,
-        progress: ProgressLike) -> Report:
+def _do(
+    job: Job,
+    manifest: Manifest,
+    address: str | None,
+    workers: int | None,
+    cpus: int,
+    retries: int,
+    required: bool,
+    progress: ProgressLike,
+) -> Report:
     try:
         if manifest.missing():
             with cluster(address, workers) as ray, watch(progress, manifest.kind) as tell:
@@ -132,49 +147,103 @@ def _do(job: Job, manifest: Manifest, address: str | None, workers: int | None, 
     report = Report(manifest.out, tuple(tasks))
     if required and report.failed:
         first = report.failed[0]
-        raise PartialError(f"{len(report.failed)} of {len(tasks)} tasks failed; seed {first.seed}: {first.error}",
-                           str(manifest.out / "manifest.json"), hint="the others are there; the same call tries these again")
+        raise PartialError(
+            f"{len(report.failed)} of {len(tasks)} tasks failed; seed {first.seed}: {first.error}",
+            str(manifest.out / "manifest.json"),
+            hint="the others are there; the same call tries these again",
+        )
     return report
 
 
-def rollouts(scene: Any, drive: Policy | Function, count: int, seeds: int | Sequence[int] | None = None, *, out: PathLike,
-             duration: float | None = None, robot: str = "", command: tuple[float, float, float] = (0.0, 0.0, 0.0),
-             settings: Mapping[str, Any] | None = None, topics: Sequence[str] | None = TOPICS, address: str | None = None,
-             workers: int | None = None, cpus: int = 1, retries: int = 2, required: bool = True, overwrite: bool = False,
-             progress: ProgressLike = None) -> Report:
+def rollouts(
+    scene: Any,
+    drive: Policy | Function,
+    count: int,
+    seeds: int | Sequence[int] | None = None,
+    *,
+    out: PathLike,
+    duration: float | None = None,
+    robot: str = "",
+    command: tuple[float, float, float] = (0.0, 0.0, 0.0),
+    settings: Mapping[str, Any] | None = None,
+    topics: Sequence[str] | None = TOPICS,
+    address: str | None = None,
+    workers: int | None = None,
+    cpus: int = 1,
+    retries: int = 2,
+    required: bool = True,
+    overwrite: bool = False,
+    progress: ProgressLike = None,
+) -> Report:
     """Simulates a scene `count` times, by one seed each, and writes OUT/0000 … with run.mcap and task.json.
 
-    scene: path, Scene or dict; all workers see its files. drive: a Policy, which drives `robot` ("" = the first) at `command`
-    (vx, vy [m/s], yaw rate [rad/s]) for `duration` [s]; or a function (sim, seed, folder) that steps the simulation, may write files into
-    the folder, and returns a dict for task.json or None. seeds: None = 1, 2 …; a number = the first; or a list. settings: options of the
-    scene. topics: of the log; None = no log. cpus: of one task. retries: of a task whose worker dies. address: of a Ray cluster; None = the
-    one that Ray is connected to, else one of `workers` processes here (None = all CPUs) for the time of the call.
+    scene: path, Scene or dict; all workers see its files. drive: a Policy, which drives `robot` ("" = the first) at
+    `command` (vx, vy [m/s], yaw rate [rad/s]) for `duration` [s]; or a function (sim, seed, folder) that steps the
+    simulation, may write files into the folder, and returns a dict for task.json or None. seeds: None = 1, 2 …; a
+    number = the first; or a list. settings: options of the scene. topics: of the log; None = no log. cpus: of one
+    task. retries: of a task whose worker dies. address: of a Ray cluster; None = the one that Ray is connected to,
+    else one of `workers` processes here (None = all CPUs) for the time of the call.
 
-    Raises PartialError: tasks failed and `required` is true; the others are done. UsageError: OUT is of another request.
+    Raises PartialError: tasks failed and `required` is true; the others are done. UsageError: OUT is of another
+    request.
     """
     source, described = _scene_source(scene)
     described |= _drive_print(drive)
     if not callable(drive) and (duration is None or not 0 < duration < float("inf")):
         raise UsageError(f"a policy's rollout needs a duration above 0 s, not {duration}")
-    job = RolloutJob(source, drive, dict(settings or {}), robot, command, float(duration or 0), None if topics is None else list(topics))
-    request = {**described, "settings": {k: repr(v) for k, v in job.settings.items()}, "robot": robot, "command": list(command),
-               "duration": job.duration, "topics": job.topics}
+    job = RolloutJob(
+        source,
+        drive,
+        dict(settings or {}),
+        robot,
+        command,
+        float(duration or 0),
+        None if topics is None else list(topics),
+    )
+    request = {
+        **described,
+        "settings": {k: repr(v) for k, v in job.settings.items()},
+        "robot": robot,
+        "command": list(command),
+        "duration": job.duration,
+        "topics": job.topics,
+    }
     manifest = Manifest(Path(out).absolute(), "rollouts", request, _seeds(count, seeds), overwrite)
     return _do(job, manifest, address, workers, cpus, retries, required, progress)
 
 
-def variants(log: PathLike, randomize: PathLike, count: int, out: PathLike, *, first_seed: int = 1, address: str | None = None,
-             workers: int | None = None, cpus: int = 1, retries: int = 2, required: bool = True, overwrite: bool = False,
-             progress: ProgressLike = None, **options: Any) -> Report:
-    """Records a log again `count` times under what the [[randomize]]s of a file draw: OUT/0000 … with seeds from `first_seed` on.
+def variants(
+    log: PathLike,
+    randomize: PathLike,
+    count: int,
+    out: PathLike,
+    *,
+    first_seed: int = 1,
+    address: str | None = None,
+    workers: int | None = None,
+    cpus: int = 1,
+    retries: int = 2,
+    required: bool = True,
+    overwrite: bool = False,
+    progress: ProgressLike = None,
+    **options: Any,
+) -> Report:
+    """Records a log again `count` times under what the [[randomize]]s of a file draw: OUT/0000 … with seeds from
+    `first_seed` on.
 
-    Each folder is what `gloam replay --variants` makes. options: as of Log.variants: settings, motion, outputs, cameras, width, height,
-    rate [Hz], duration [s]. The rest as of rollouts().
+    Each folder is what `gloam replay --variants` makes. options: as of Log.variants: settings, motion, outputs,
+    cameras, width, height, rate [Hz], duration [s]. The rest as of rollouts().
     """
     file, drawn = Path(log).absolute(), Path(randomize).absolute()
-    request = {"log": _content(file), "randomize": _content(drawn), "options": {k: repr(v) for k, v in sorted(options.items())}}
+    request = {
+        "log": _content(file),
+        "randomize": _content(drawn),
+        "options": {k: repr(v) for k, v in sorted(options.items())},
+    }
     manifest = Manifest(Path(out).absolute(), "variants", request, _seeds(count, first_seed), overwrite)
-    return _do(VariantJob(str(file), str(drawn), options), manifest, address, workers, cpus, retries, required, progress)
+    return _do(
+        VariantJob(str(file), str(drawn), options), manifest, address, workers, cpus, retries, required, progress
+    )
 
 
 __all__ = ["TOPICS", "Report", "Task", "rollouts", "variants"]

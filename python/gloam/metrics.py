@@ -25,6 +25,14 @@ class PresentMetrics:
             self._values = _read(last.decode())
         return self._values
 
+    def begin(self) -> None:
+        """Forgets what was before a reset: they count anew."""
+        self._values = {}
+
+    def close(self) -> None:
+        """Ends the stream."""
+        self._stream.close()
+
 
 def _read(message: dict[str, Any]) -> dict[str, float]:
     return {name: float(value) for name, value in zip(message["names"], message["values"], strict=True)}

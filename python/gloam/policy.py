@@ -1,10 +1,11 @@
 """Policies: networks in ONNX files that drive robots (docs/policies.md).
 
-    policy = gloam.Policy("walk.onnx", "walk.toml")     # the TOML only where the file's metadata does not tell enough
-    drive = policy.attach(sim, "go2")
-    drive.command(vx=0.5)
-    sim.run_until(time=5)
+policy = gloam.Policy("walk.onnx", "walk.toml")     # the TOML only where the file's metadata does not tell enough
+drive = policy.attach(sim, "go2")
+drive.command(vx=0.5)
+sim.run_until(time=5)
 """
+
 from __future__ import annotations
 
 import os
@@ -47,10 +48,12 @@ def read_policy_metadata(path: PathLike) -> dict[str, Any]:
 
 
 class Policy:
-    """A network with what it was trained with: `spec`. One thread, f32, on the CPU: the same observation gives the same action.
+    """A network with what it was trained with: `spec`. One thread, f32, on the CPU: the same observation gives the
+    same action.
 
-    `settings`: a TOML whose keys replace those of the file's metadata. Raises ImportError: no package openvino; IoError: no such file;
-    InputError: no network, a damaged TOML, terms that do not fill the network's input, too little known; UnsupportedError: several inputs.
+    `settings`: a TOML whose keys replace those of the file's metadata. Raises ImportError: no package openvino;
+    IoError: no such file; InputError: no network, a damaged TOML, terms that do not fill the network's input, too
+    little known; UnsupportedError: several inputs.
     """
 
     def __init__(self, path: PathLike, settings: PathLike | None = None) -> None:
@@ -68,8 +71,11 @@ class Policy:
         spec, network = self.spec, self._network
         if spec.observation_size != network.inputs:
             parts = ", ".join(f"{term.name} {size}" for term, size in zip(spec.terms, spec.term_sizes(), strict=True))
-            raise InputError(f"the observation terms give {spec.observation_size} numbers, the network takes {network.inputs}", place,
-                             hint=parts)
+            raise InputError(
+                f"the observation terms give {spec.observation_size} numbers, the network takes {network.inputs}",
+                place,
+                hint=parts,
+            )
         if len(spec.joints) != network.outputs:
             raise InputError(f"there are {len(spec.joints)} joints, the network gives {network.outputs} numbers", place)
 
@@ -80,7 +86,9 @@ class Policy:
         """
         array = np.asarray(observation, dtype=np.float32)
         if array.ndim not in (1, 2) or array.shape[-1] != self._network.inputs:
-            raise UsageError(f"an observation of {self._network.inputs} numbers is expected, not of shape {array.shape}")
+            raise UsageError(
+                f"an observation of {self._network.inputs} numbers is expected, not of shape {array.shape}"
+            )
         if array.ndim == 2:
             rows = [self.infer(row) for row in array]
             return np.stack(rows) if rows else np.zeros((0, self._network.outputs))
@@ -94,8 +102,8 @@ class Policy:
     def attach(self, sim: Simulation, robot: Robot | str) -> PolicyDriver:
         """Lets the policy drive a robot of a simulation from its next step on; "" = a bare model without robots.
 
-        Raises NotFoundError: joints or actuators that the robot has not; UnsupportedError: actuators that take no torque; UsageError: a
-        timestep that does not divide the policy's period, a robot that is driven already.
+        Raises NotFoundError: joints or actuators that the robot has not; UnsupportedError: actuators that take no
+        torque; UsageError: a timestep that does not divide the policy's period, a robot that is driven already.
         """
         name = robot if isinstance(robot, str) else robot.name
         if name and name not in sim.robots:
@@ -106,7 +114,8 @@ class Policy:
         return Policy, (self.path, self.settings)  # read again where it is sent to
 
     def __repr__(self) -> str:
-        return f"<gloam.Policy '{self.path.name}': {self._network.inputs} -> {self._network.outputs}, {self.spec.rate:g} Hz>"
+        sizes = f"{self._network.inputs} -> {self._network.outputs}"
+        return f"<gloam.Policy '{self.path.name}': {sizes}, {self.spec.rate:g} Hz>"
 
 
 __all__ = ["TERMS", "Policy", "PolicyDriver", "PolicySpec", "Term", "TermInfo", "read_policy_metadata"]

@@ -197,7 +197,8 @@ class Simulation:
     def reset(self) -> None:
         """Back to the initial state, where it stands; time and frames count from 0 again."""
         self._core.reset()
-        self._metrics = None
+        if self._metrics is not None:
+            self._metrics.begin()
 
     def checkpoint(self) -> Checkpoint:
         return Checkpoint(self._core.checkpoint())
@@ -227,7 +228,9 @@ class Simulation:
         self._world = world
         self._core_world = world._world
         self._renderer = None
-        self._metrics = None
+        if self._metrics is not None:
+            self._metrics.close()
+            self._metrics = None
 
     def set_live_field(self, field: str, values: Any, first: int = 0) -> None:
         """Changes a field of the model that may change while it runs: "gravity", "light_intensity", "geom_color" … (docs/library.md)."""

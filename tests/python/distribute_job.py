@@ -1,4 +1,6 @@
-"""A call of gloam.distribute in a process of its own, which a test kills: python distribute_job.py SCENE OUT MARKS COUNT."""
+"""A call of gloam.distribute in a process of its own, which a test kills: python distribute_job.py SCENE OUT MARKS
+COUNT."""
+
 import os
 import sys
 import time
@@ -26,5 +28,7 @@ def step(sim: gloam.Simulation, seed: int, folder: Path) -> dict[str, int]:
 
 if __name__ == "__main__":
     os.environ["GLOAM_TEST_MARKS"] = sys.argv[3]
-    report = distribute.rollouts(sys.argv[1], step, int(sys.argv[4]), out=sys.argv[2], topics=None, workers=2, progress=False)
+    report = distribute.rollouts(
+        sys.argv[1], step, int(sys.argv[4]), out=sys.argv[2], topics=None, workers=2, progress=False
+    )
     print(len(report.done))

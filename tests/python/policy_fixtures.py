@@ -1,4 +1,5 @@
 """Small networks, robots and settings for tests of policies."""
+
 from __future__ import annotations
 
 from collections.abc import Mapping
@@ -6,10 +7,11 @@ from pathlib import Path
 
 import numpy as np
 import onnx
+from gloam.policy import Policy
 from onnx import TensorProto, helper, numpy_helper
 
 # Two hinges that hang below a floating base. Names of joints and motors differ; the motor of "knee" has a gear.
-BIPED = """<mujoco model="leg">
+LEG = """<mujoco model="leg">
   <option timestep="0.005" gravity="0 0 0"/>
   <worldbody>
     <body name="base" pos="0 0 1">
@@ -52,12 +54,20 @@ term = "velocity_commands"
 """
 
 
-def write_network(path: Path, weights: np.ndarray, bias: np.ndarray | None = None, metadata: Mapping[str, str] | None = None,
-                  inputs: tuple[str, ...] = ("obs",)) -> Path:
+def write_network(
+    path: Path,
+    weights: np.ndarray,
+    bias: np.ndarray | None = None,
+    metadata: Mapping[str, str] | None = None,
+    inputs: tuple[str, ...] = ("obs",),
+) -> Path:
     """An ONNX file: actions = weights @ obs + bias; (outputs, inputs). More `inputs` are declared and not used."""
     outputs, size = weights.shape
     bias = np.zeros(outputs) if bias is None else np.asarray(bias)
-    tensors = [numpy_helper.from_array(weights.T.astype(np.float32), "w"), numpy_helper.from_array(bias.astype(np.float32), "b")]
+    tensors = [
+        numpy_helper.from_array(weights.T.astype(np.float32), "w"),
+        numpy_helper.from_array(bias.astype(np.float32), "b"),
+    ]
     nodes = [helper.make_node("MatMul", ["obs", "w"], ["wx"]), helper.make_node("Add", ["wx", "b"], ["y0"])]
     last = "y0"
     for i, name in enumerate(inputs[1:]):
@@ -67,7 +77,9 @@ def write_network(path: Path, weights: np.ndarray, bias: np.ndarray | None = Non
     ports = [helper.make_tensor_value_info(inputs[0], TensorProto.FLOAT, [1, size])]
     ports += [helper.make_tensor_value_info(name, TensorProto.FLOAT, [1, 1]) for name in inputs[1:]]
     result = helper.make_tensor_value_info("actions", TensorProto.FLOAT, [1, outputs])
-    model = helper.make_model(helper.make_graph(nodes, "g", ports, [result], tensors), opset_imports=[helper.make_opsetid("", 17)])
+    model = helper.make_model(
+        helper.make_graph(nodes, "g", ports, [result], tensors), opset_imports=[helper.make_opsetid("", 17)]
+    )
     model.ir_version = 8
     if metadata:
         helper.set_model_props(model, dict(metadata))
@@ -77,7 +89,7 @@ def write_network(path: Path, weights: np.ndarray, bias: np.ndarray | None = Non
 
 def write_model(folder: Path, actuators: str = MOTORS) -> Path:
     path = folder / "leg.xml"
-    path.write_text(BIPED.format(actuators=actuators))
+    path.write_text(LEG.format(actuators=actuators))
     return path
 
 
@@ -93,3 +105,13 @@ def write_settings(folder: Path, text: str = POLICY + OBSERVATION) -> Path:
     path = folder / "policy.toml"
     path.write_text(text)
     return path
+
+
+HELD = np.array([0.375, -0.625])  # actions of the network without inputs, exact in f32
+
+
+def held_policy(folder: Path, terms: str = OBSERVATION, size: int = 7, extra: str = "") -> Policy:
+    """Always the actions HELD."""
+    return Policy(
+        write_network(folder / "p.onnx", np.zeros((2, size)), HELD), write_settings(folder, POLICY + extra + terms)
+    )

@@ -1,4 +1,5 @@
 """Many runs by gloam.distribute: the list of a folder, errors, and what a kill leaves."""
+
 from __future__ import annotations
 
 import json
@@ -11,10 +12,9 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
+import gloam
 import numpy as np
 import pytest
-
-import gloam
 from gloam import distribute
 from gloam._distribute.cluster import cluster
 from gloam._distribute.jobs import Failure, RolloutJob, SceneSource, work
@@ -69,7 +69,9 @@ def fail_at_three(sim: gloam.Simulation, seed: int, folder: Path) -> None:
     sim.step(seed)
 
 
-def _manifest(out: Path, seeds: list[int], request: Mapping[str, Any] | None = None, overwrite: bool = False) -> Manifest:
+def _manifest(
+    out: Path, seeds: list[int], request: Mapping[str, Any] | None = None, overwrite: bool = False
+) -> Manifest:
     return Manifest(out, "test", request or {"a": 1}, seeds, overwrite)
 
 
@@ -130,7 +132,9 @@ def test_one_call_at_a_time(tmp_path: Path) -> None:
     _manifest(tmp_path, [1]).close()
 
 
-@pytest.mark.parametrize("text, says", [("{", "damaged"), ("[]", "no list of tasks"), ('{"tasks": 3}', "no list of tasks")])
+@pytest.mark.parametrize(
+    "text, says", [("{", "damaged"), ("[]", "no list of tasks"), ('{"tasks": 3}', "no list of tasks")]
+)
 def test_damaged_lists(tmp_path: Path, text: str, says: str) -> None:
     (tmp_path / "manifest.json").write_text(text)
     with pytest.raises(gloam.InputError, match=says):
@@ -162,10 +166,17 @@ def test_a_task_that_fails_leaves_nothing(tmp_path: Path) -> None:
     assert not list(tmp_path.iterdir())
 
 
-@pytest.mark.parametrize("arguments, says", [
-    ({"count": 0}, "from 1 on"), ({"count": True}, "from 1 on"), ({"count": 2, "seeds": [1]}, "1 seeds are given for 2"),
-    ({"count": 2, "seeds": [1, 1]}, "twice"), ({"count": 1, "seeds": -1}, "0 … 2"), ({"count": 1, "seeds": [2**64]}, "0 … 2"),
-])
+@pytest.mark.parametrize(
+    "arguments, says",
+    [
+        ({"count": 0}, "from 1 on"),
+        ({"count": True}, "from 1 on"),
+        ({"count": 2, "seeds": [1]}, "1 seeds are given for 2"),
+        ({"count": 2, "seeds": [1, 1]}, "twice"),
+        ({"count": 1, "seeds": -1}, "0 … 2"),
+        ({"count": 1, "seeds": [2**64]}, "0 … 2"),
+    ],
+)
 def test_wrong_seeds(scene: Path, tmp_path: Path, arguments: dict[str, Any], says: str) -> None:
     with pytest.raises(gloam.UsageError, match=says):
         distribute.rollouts(scene, throw, out=tmp_path / "out", **arguments)
@@ -182,7 +193,9 @@ def test_wrong_arguments(scene: Path, tmp_path: Path) -> None:
         distribute.variants(tmp_path / "none.mcap", tmp_path / "skies.toml", 1, tmp_path / "out")
 
 
-def test_without_ray_the_error_says_what_to_install(scene: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_without_ray_the_error_says_what_to_install(
+    scene: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.setitem(sys.modules, "ray", None)
     with pytest.raises(ImportError, match="pip install ray"):
         distribute.rollouts(scene, throw, 1, out=tmp_path / "out")
@@ -216,8 +229,11 @@ def test_cluster_listens_on_loopback_only(two_workers: Any) -> None:
 @slow
 def test_results_do_not_depend_on_the_workers(two_workers: Any, scene: Path, tmp_path: Path) -> None:
     told: list[float] = []
-    report = distribute.rollouts(scene, throw, 5, 11, out=tmp_path / "many", progress=lambda task, done, s, left: told.append(done))
+    report = distribute.rollouts(
+        scene, throw, 5, 11, out=tmp_path / "many", progress=lambda task, done, s, left: told.append(done)
+    )
     assert [task.seed for task in report.done] == [11, 12, 13, 14, 15] and told[-1] == 1.0 and told == sorted(told)
+    (tmp_path / "one").mkdir()
     for task in report.tasks:
         job = RolloutJob(SceneSource(str(scene)), throw, topics=list(distribute.TOPICS))
         assert work(job, str(tmp_path / "one"), task.folder.name, task.seed, 1) is None
@@ -279,7 +295,14 @@ def test_kills_of_a_worker_and_of_the_call(scene: Path, tmp_path: Path) -> None:
     pytest.importorskip("ray")
     marks, out = tmp_path / "marks", tmp_path / "out"
     marks.mkdir()
-    command = [sys.executable, str(Path(__file__).with_name("distribute_job.py")), str(scene), str(out), str(marks), "10"]
+    command = [
+        sys.executable,
+        str(Path(__file__).with_name("distribute_job.py")),
+        str(scene),
+        str(out),
+        str(marks),
+        "10",
+    ]
     environment = {**os.environ, "GLOAM_TEST_MARKS": str(marks)}
     first = subprocess.Popen(command, env=environment, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
     deadline = time.monotonic() + 120

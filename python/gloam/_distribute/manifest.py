@@ -1,8 +1,10 @@
 """The list of a folder of tasks: what was asked for, and which of it is there.
 
-A finished task is a folder OUT/0007 with task.json, which came there whole, by one rename; that is the truth. OUT/manifest.json tells the
-same for readers and is written anew whenever it changes. While a call works on a folder it holds OUT/.lock.
+A finished task is a folder OUT/0007 with task.json, which came there whole, by one rename; that is the truth.
+OUT/manifest.json tells the same for readers and is written anew whenever it changes. While a call works on a folder
+it holds OUT/.lock.
 """
+
 from __future__ import annotations
 
 import errno
@@ -42,7 +44,9 @@ def read_task(folder: Path) -> dict[str, Any] | None:
     except (FileNotFoundError, NotADirectoryError):
         return None
     except (OSError, ValueError) as error:
-        raise InputError(f"it is damaged: {error}", str(folder / TASK_FILE), hint="remove that folder, it is made again") from None
+        raise InputError(
+            f"it is damaged: {error}", str(folder / TASK_FILE), hint="remove that folder, it is made again"
+        ) from None
     return made
 
 
@@ -58,7 +62,8 @@ def publish(part: Path, target: Path) -> bool:
 
 
 class Manifest:
-    """Tasks of one folder, by their seeds. Raises UsageError: it holds tasks of another request, or another call works on it now."""
+    """Tasks of one folder, by their seeds. Raises UsageError: it holds tasks of another request, or another call
+    works on it now."""
 
     def __init__(self, out: Path, kind: str, request: Mapping[str, Any], seeds: Sequence[int], overwrite: bool) -> None:
         self.out = out
@@ -94,8 +99,10 @@ class Manifest:
         for index, seed in enumerate(self.seeds):
             task = read_task(self.folder(index))
             if task is not None and task.get("seed") != seed:
-                raise UsageError(f"{self.folder(index)} was made with seed {task.get('seed')}, not {seed}",
-                                 hint="give another out, or overwrite=True")
+                raise UsageError(
+                    f"{self.folder(index)} was made with seed {task.get('seed')}, not {seed}",
+                    hint="give another out, or overwrite=True",
+                )
             if task is None and self.folder(index).exists():
                 raise UsageError(f"{self.folder(index)} is there and no task made it", hint="give another out")
         self.write()
@@ -132,7 +139,10 @@ class Manifest:
             state = "done" if index not in missing else "failed" if index in self.errors else "waiting"
             task = {"seed": seed, "folder": self.folder(index).name, "state": state}
             tasks.append({**task, "error": self.errors[index]} if state == "failed" else task)
-        write_json(self.out / "manifest.json", {"kind": self.kind, "print": self._print, "request": self._request, "tasks": tasks})
+        write_json(
+            self.out / "manifest.json",
+            {"kind": self.kind, "print": self._print, "request": self._request, "tasks": tasks},
+        )
 
     def close(self) -> None:
         self._lock.close()  # which unlocks

@@ -1,6 +1,9 @@
-"""The loop in which a policy drives a robot: observation, network, targets, torques, between the steps of a simulation."""
+"""The loop in which a policy drives a robot: observation, network, targets, torques, between the steps of a
+simulation."""
+
 from __future__ import annotations
 
+import contextlib
 import math
 import weakref
 from collections.abc import Sequence
@@ -8,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..errors import DivergedError, UsageError
+from ..errors import ClosedError, DivergedError, UsageError
 from .observer import Observer
 from .robot_io import RobotIo
 from .spec import AXES
@@ -30,17 +33,19 @@ def _steps_per_action(rate: float, timestep: float) -> int:
     steps = 1.0 / (rate * timestep)
     whole = max(1, round(steps))
     if abs(steps - whole) > 1e-6 * steps:
-        raise UsageError(f"a policy of {rate:g} Hz acts every {steps:g} steps of {timestep:g} s, which is no whole number",
-                         hint=f"take a timestep of {1.0 / (rate * whole):g} s")
+        raise UsageError(
+            f"a policy of {rate:g} Hz acts every {steps:g} steps of {timestep:g} s, which is no whole number",
+            hint=f"take a timestep of {1.0 / (rate * whole):g} s",
+        )
     return whole
 
 
 class PolicyDriver:
     """A policy at work on one robot. It acts before each step of the simulation, whatever steps it, until detach().
 
-    At the policy's rate it observes and runs the network. Position servos of the policy's own gains get the targets as controls; for all
-    other motors and servos the torques kp (target - q) - kd v are computed at every step. What the robot's own controller writes is
-    replaced. When time goes back (reset, restore) it begins anew.
+    At the policy's rate it observes and runs the network. Position servos of the policy's own gains get the targets
+    as controls; for all other motors and servos the torques kp (target - q) - kd v are computed at every step. What
+    the robot's own controller writes is replaced. When time goes back (reset, restore) it begins anew.
     """
 
     def __init__(self, policy: Policy, sim: Any, robot: str) -> None:
@@ -91,7 +96,8 @@ class PolicyDriver:
         return values[0], values[1], values[2]
 
     def place(self, position: Sequence[float], yaw: float = 0.0) -> None:
-        """Puts the robot at `position` (3,) [m], turned by `yaw` [rad], at rest, its joints at the policy's default positions."""
+        """Puts the robot at `position` (3,) [m], turned by `yaw` [rad], at rest, its joints at the policy's default
+        positions."""
         sim = self._sim()
         if sim is None:
             raise UsageError("the simulation of this policy is gone")
@@ -108,7 +114,8 @@ class PolicyDriver:
         if self in drivers:
             drivers.remove(self)
             if not drivers:
-                sim.on_step(None)  # type: ignore[union-attr]
+                with contextlib.suppress(ClosedError):
+                    sim.on_step(None)  # type: ignore[union-attr]
 
     def __enter__(self) -> PolicyDriver:
         return self

@@ -1,7 +1,9 @@
 """Metadata of ONNX files as mjlab 1.6 and holosoma 0.1 write it, as settings in the form of a policy's TOML.
 
-mjlab writes lists as text with commas (parts of an entry with semicolons), rounded to three decimals; holosoma writes JSON.
+mjlab writes lists as text with commas (parts of an entry with semicolons), rounded to three decimals; holosoma writes
+JSON.
 """
+
 from __future__ import annotations
 
 import json
@@ -51,16 +53,23 @@ def _mjlab_terms(metadata: Mapping[str, str], file: str) -> list[dict[str, Any]]
         if lengths:
             term["history"] = max(1, round(lengths[i][0]))  # mjlab: 0 = no history
         if term.get("history", 1) > 1 and not (len(is_flat) > i and is_flat[i]):
-            raise InputError(f"observation term '{name}' has a history that is not flattened", file,
-                             hint="export the policy with flatten_history_dim")
+            raise InputError(
+                f"observation term '{name}' has a history that is not flattened",
+                file,
+                hint="export the policy with flatten_history_dim",
+            )
         terms.append(term)
     return terms
 
 
 def _mjlab(metadata: Mapping[str, str], file: str) -> dict[str, Any]:
     policy: dict[str, Any] = {"joints": _split(metadata["joint_names"])}
-    for key, name in (("joint_stiffness", "kp"), ("joint_damping", "kd"), ("default_joint_pos", "default_positions"),
-                      ("action_scale", "action_scale")):
+    for key, name in (
+        ("joint_stiffness", "kp"),
+        ("joint_damping", "kd"),
+        ("default_joint_pos", "default_positions"),
+        ("action_scale", "action_scale"),
+    ):
         if key in metadata:
             numbers = _numbers(metadata[key], key, file)
             policy[name] = numbers[0] if len(numbers) == 1 else numbers
@@ -87,7 +96,8 @@ def _holosoma(metadata: Mapping[str, str], file: str) -> dict[str, Any]:
 
 
 def settings_of(metadata: Mapping[str, str], file: str) -> dict[str, Any]:
-    """{"policy": {...}, "observation": [...]} of what the file tells, empty where it tells nothing that is known. Raises InputError."""
+    """{"policy": {...}, "observation": [...]} of what the file tells, empty where it tells nothing that is known.
+    Raises InputError."""
     if "joint_names" in metadata:
         return _mjlab(metadata, file)
     if "dof_names" in metadata:
@@ -96,7 +106,8 @@ def settings_of(metadata: Mapping[str, str], file: str) -> dict[str, Any]:
 
 
 def merge(base: Mapping[str, Any], over: Mapping[str, Any], file: str) -> dict[str, Any]:
-    """Settings of the metadata with those of a TOML laid over: keys of [policy] one by one, [[observation]] as a whole."""
+    """Settings of the metadata with those of a TOML laid over: keys of [policy] one by one, [[observation]] as a
+    whole."""
     for key in over:
         if key not in ("policy", "observation"):
             raise InputError(f"there is no [{key}] in a policy's TOML", file, hint="[policy] and [[observation]]")

@@ -1,4 +1,5 @@
 """A network of an ONNX file, run by OpenVINO: f32, one thread, so that the same input gives the same output."""
+
 from __future__ import annotations
 
 import importlib
@@ -17,15 +18,16 @@ def _openvino() -> Any:
     try:
         return importlib.import_module("openvino")
     except ImportError as error:
-        raise ImportError("gloam.Policy runs networks through the package 'openvino', which is not installed: "
-                          "pip install openvino") from error
+        raise ImportError(
+            "gloam.Policy runs networks through the package 'openvino', which is not installed: pip install openvino"
+        ) from error
 
 
 class Network:
     """One input of (1, inputs) and one output of (1, outputs) that are used, both f32.
 
-    Raises ImportError: no openvino; IoError: no such file; InputError: it is no ONNX file, or its output has no fixed size;
-    UnsupportedError: it takes several inputs.
+    Raises ImportError: no openvino; IoError: no such file; InputError: it is no ONNX file, or its output has no fixed
+    size; UnsupportedError: it takes several inputs.
     """
 
     def __init__(self, path: Path) -> None:
@@ -37,12 +39,17 @@ class Network:
             model = core.read_model(path)
         except RuntimeError as error:
             lines = [line for line in str(error).splitlines() if line.strip()]
-            raise InputError(f"it is no network that OpenVINO reads: {lines[-1] if lines else error}", str(path)) from None
+            raise InputError(
+                f"it is no network that OpenVINO reads: {lines[-1] if lines else error}", str(path)
+            ) from None
         self.metadata = self._metadata(model)
         if len(model.inputs) != 1:
             listed = ", ".join(port.get_any_name() for port in model.inputs)
-            raise UnsupportedError(f"the network takes {len(model.inputs)} inputs ({listed}), a policy takes its observation alone",
-                                   str(path), hint="policies that track a motion by its time are not supported")
+            raise UnsupportedError(
+                f"the network takes {len(model.inputs)} inputs ({listed}), a policy takes its observation alone",
+                str(path),
+                hint="policies that track a motion by its time are not supported",
+            )
         names = [port.get_any_name() for port in model.outputs]
         self._output = next((names.index(name) for name in _ACTIONS if name in names), 0)
         self.inputs = self._fix_batch(model, path)
@@ -67,7 +74,9 @@ class Network:
         if shape.rank.is_dynamic or len(shape) != 2 or shape[1].is_dynamic:
             raise InputError(f"the network's input has the shape {shape}, not (1, observation)", str(path))
         if str(model.inputs[0].element_type.to_string()) != "f32":
-            raise InputError(f"the network's input is of {model.inputs[0].element_type.to_string()}, not f32", str(path))
+            raise InputError(
+                f"the network's input is of {model.inputs[0].element_type.to_string()}, not f32", str(path)
+            )
         model.reshape([1, shape[1].get_length()])
         return int(shape[1].get_length())
 

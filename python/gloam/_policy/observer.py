@@ -1,4 +1,5 @@
 """The observation of a policy: terms in order, each clipped, scaled and with its history."""
+
 from __future__ import annotations
 
 from collections import deque
@@ -30,13 +31,17 @@ class Observer:
     def observe(self, state: RobotState, command: Array, action: Array) -> NDArray[np.float32]:
         """The network's input (observation_size,) at one control period; moves histories and phase on.
 
-        command: (3,) vx, vy [m/s], yaw rate [rad/s]; action: (n,) the previous output. Raises DivergedError: a number is not finite.
+        command: (3,) vx, vy [m/s], yaw rate [rad/s]; action: (n,) the previous output. Raises DivergedError: a number
+        is not finite.
         """
         self._clock.tick(command)
         parts: list[Array] = []
         for term, scale, clip, past in zip(self._spec.terms, self._scales, self._clips, self._past, strict=True):
-            now = state.sensors[term.sensor] if term.sensor else term_values(
-                term.name, state, command, action, self._spec.default_positions, self._clock.phase)
+            now = (
+                state.sensors[term.sensor]
+                if term.sensor
+                else term_values(term.name, state, command, action, self._spec.default_positions, self._clock.phase)
+            )
             if clip is not None:
                 now = np.minimum(np.maximum(now, clip[0]), clip[1])  # NaN stays NaN
             if scale is not None:

@@ -1,7 +1,9 @@
 """A robot in MuJoCo's memory: its state and its actuators, in the order of a policy's joints.
 
-Source of the formulas: MuJoCo's documentation, "Computation": force = gain * control + b0 + b1 * length + b2 * velocity.
+Source of the formulas: MuJoCo's documentation, "Computation": force = gain * control + b0 + b1 * length + b2 *
+velocity.
 """
+
 from __future__ import annotations
 
 import difflib
@@ -23,15 +25,21 @@ _SAME_GAIN = 2e-3  # relative: mjlab rounds gains to three decimals
 
 def _names(memory: Any, addresses: str) -> list[str]:
     text = np.asarray(memory.array("names")).astype(np.uint8).tobytes()
-    return [text[start:text.index(b"\0", start)].decode() for start in np.asarray(memory.array(addresses)).ravel().tolist()]
+    return [
+        text[start : text.index(b"\0", start)].decode()
+        for start in np.asarray(memory.array(addresses)).ravel().tolist()
+    ]
 
 
 def _find(wanted: list[str], names: list[str], what: str, robot: str) -> NDArray[np.intp]:
     missing = [name for name in wanted if name not in names]
     if missing:
         near = difflib.get_close_matches(missing[0], names, n=1)
-        hint = (f"did you mean '{near[0]}'? " if near else "") + f"{what}s of the robot: " + \
-            (", ".join(name for name in names if name.startswith(f"{robot}/") or not robot) or "none")
+        hint = (
+            (f"did you mean '{near[0]}'? " if near else "")
+            + f"{what}s of the robot: "
+            + (", ".join(name for name in names if name.startswith(f"{robot}/") or not robot) or "none")
+        )
         raise NotFoundError(f"robot '{robot}' has no {what} {', '.join(missing)}, which the policy drives", hint=hint)
     return np.array([names.index(name) for name in wanted], dtype=np.intp)
 
@@ -45,8 +53,9 @@ def _model_names(spec: PolicySpec, robot: str) -> list[str]:
 class RobotIo:
     """Reads and drives one robot by the arrays of a simulation's memory, which it keeps.
 
-    Raises NotFoundError: a joint, a sensor or a joint's actuator is missing; UnsupportedError: joints that are no hinges or slides, no
-    floating base where a term needs it, actuators whose torque does not follow from their control at once.
+    Raises NotFoundError: a joint, a sensor or a joint's actuator is missing; UnsupportedError: joints that are no
+    hinges or slides, no floating base where a term needs it, actuators whose torque does not follow from their
+    control at once.
     """
 
     def __init__(self, memory: Any, spec: PolicySpec, robot: str) -> None:
@@ -75,8 +84,10 @@ class RobotIo:
             return
         for term in self._spec.terms:
             if term.name in ("base_lin_vel", "base_ang_vel", "projected_gravity") and not term.sensor:
-                raise UnsupportedError(f"the policy observes '{term.name}', but the robot has no floating base",
-                                       hint='give its [[robot]] base = "free", or the term a sensor')
+                raise UnsupportedError(
+                    f"the policy observes '{term.name}', but the robot has no floating base",
+                    hint='give its [[robot]] base = "free", or the term a sensor',
+                )
 
     def _find_actuators(self, joints: NDArray[np.intp], names: list[str]) -> None:
         memory = self.memory
@@ -86,26 +97,37 @@ class RobotIo:
         for joint in joints:
             found = np.flatnonzero((target == joint) & is_joint)
             if len(found) != 1:
-                raise NotFoundError(f"joint '{names[joint]}' has {'no actuator' if not len(found) else 'several actuators'}",
-                                    hint="a policy drives each of its joints by one motor or position servo")
+                raise NotFoundError(
+                    f"joint '{names[joint]}' has {'no actuator' if not len(found) else 'several actuators'}",
+                    hint="a policy drives each of its joints by one motor or position servo",
+                )
             at.append(int(found[0]))
         self._actuators = np.array(at, dtype=np.intp)
         gains = memory.array("actuator_gainprm").reshape(len(target), -1)[at]
         biases = memory.array("actuator_biasprm").reshape(len(target), -1)[at]
         self._gear = memory.array("actuator_gear").reshape(len(target), -1)[at, 0]
         for i, actuator in enumerate(at):
-            if (memory.array("actuator_gaintype")[actuator] != _FIXED_GAIN or memory.array("actuator_dyntype")[actuator] != 0
-                    or memory.array("actuator_biastype")[actuator] not in _AFFINE_BIAS or gains[i, 0] * self._gear[i] == 0):
-                raise UnsupportedError(f"the actuator of '{self._spec.joints[i]}' is neither a motor nor a position servo",
-                                       hint="filters, muscles and other dynamics are not driven by policies")
+            if (
+                memory.array("actuator_gaintype")[actuator] != _FIXED_GAIN
+                or memory.array("actuator_dyntype")[actuator] != 0
+                or memory.array("actuator_biastype")[actuator] not in _AFFINE_BIAS
+                or gains[i, 0] * self._gear[i] == 0
+            ):
+                raise UnsupportedError(
+                    f"the actuator of '{self._spec.joints[i]}' is neither a motor nor a position servo",
+                    hint="filters, muscles and other dynamics are not driven by policies",
+                )
         self._gain, self._bias = gains[:, 0], biases[:, :3] * (memory.array("actuator_biastype")[at] == 1)[:, None]
         self._has_bias, self._has_limit = bool(self._bias.any()), bool(np.isfinite(self._spec.torque_limit).any())
-        square = self._gear ** 2
+        square = self._gear**2
         # A servo of the policy's own gains takes its targets as controls.
-        self.is_servo = bool(np.allclose(self._gain * square, self._spec.kp, rtol=_SAME_GAIN)
-                             and np.allclose(-self._bias[:, 1] * square, self._spec.kp, rtol=_SAME_GAIN)
-                             and np.allclose(-self._bias[:, 2] * square, self._spec.kd, rtol=_SAME_GAIN)
-                             and np.isinf(self._spec.torque_limit).all() and (self._bias[:, 0] == 0).all())
+        self.is_servo = bool(
+            np.allclose(self._gain * square, self._spec.kp, rtol=_SAME_GAIN)
+            and np.allclose(-self._bias[:, 1] * square, self._spec.kp, rtol=_SAME_GAIN)
+            and np.allclose(-self._bias[:, 2] * square, self._spec.kd, rtol=_SAME_GAIN)
+            and np.isinf(self._spec.torque_limit).all()
+            and (self._bias[:, 0] == 0).all()
+        )
 
     def _find_sensors(self, robot: str) -> None:
         wanted = {term.sensor: term for term in self._spec.terms if term.sensor}
@@ -119,24 +141,36 @@ class RobotIo:
             start, size = int(self.memory.array("sensor_adr")[at]), int(self.memory.array("sensor_dim")[at])
             if size != term_info(term.name).size(len(self._spec.joints)):
                 raise UnsupportedError(f"sensor '{name}' has {size} numbers, which is not the size of '{term.name}'")
-            self._sensors[name] = data[start:start + size]
+            self._sensors[name] = data[start : start + size]
 
     def state(self) -> RobotState:
         zero = np.zeros(3)
         linear, angular, gravity = zero, zero, np.array([0.0, 0.0, -1.0])
         if self._base is not None:
             q, v = self._base
-            w, x, y, z = self._qpos[q + 3:q + 7]
-            X_R = np.array([[1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
-                            [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
-                            [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)]])
-            linear = X_R.T @ self._qvel[v:v + 3]  # a free joint's linear velocity is in world axes, the angular one in the body's
-            angular, gravity = self._qvel[v + 3:v + 6].copy(), -X_R[2]
-        return RobotState(linear, angular, gravity, self._qpos[self._q_at], self._qvel[self._v_at],
-                          {name: values.copy() for name, values in self._sensors.items()})
+            w, x, y, z = self._qpos[q + 3 : q + 7]
+            R_WB = np.array(
+                [
+                    [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
+                    [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
+                    [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
+                ]
+            )
+            # Velocities of a free joint: the linear one is in world axes, the angular one in the body's.
+            linear = R_WB.T @ self._qvel[v : v + 3]
+            angular, gravity = self._qvel[v + 3 : v + 6].copy(), -R_WB[2]
+        return RobotState(
+            linear,
+            angular,
+            gravity,
+            self._qpos[self._q_at],
+            self._qvel[self._v_at],
+            {name: values.copy() for name, values in self._sensors.items()},
+        )
 
     def drive(self, targets: Array) -> None:
-        """Writes controls that give the torques kp (target - q) - kd v, within the torque limits; (n,) targets [rad]."""
+        """Writes controls that give the torques kp (target - q) - kd v, within the torque limits; (n,) targets
+        [rad]."""
         if self.is_servo:
             self._ctrl[self._actuators] = targets * self._gear
             return

@@ -1,4 +1,6 @@
-"""What a policy was trained with: joints, gains, scales, observation terms. Checked, in the order of the policy's joints."""
+"""What a policy was trained with: joints, gains, scales, observation terms. Checked, in the order of the policy's
+joints."""
+
 from __future__ import annotations
 
 import math
@@ -13,8 +15,20 @@ from ..errors import InputError
 from .terms import Array, term_info
 
 AXES = ("vx", "vy", "yaw_rate")
-POLICY_KEYS = ("rate", "joints", "model_joints", "kp", "kd", "default_positions", "action_scale", "action_clip",
-               "torque_limit", "history_start", "gait_period", "command_ranges")
+POLICY_KEYS = (
+    "rate",
+    "joints",
+    "model_joints",
+    "kp",
+    "kd",
+    "default_positions",
+    "action_scale",
+    "action_clip",
+    "torque_limit",
+    "history_start",
+    "gait_period",
+    "command_ranges",
+)
 TERM_KEYS = ("term", "scale", "clip", "history", "sensor")
 
 
@@ -85,8 +99,8 @@ def _range(value: Any, what: str, file: str) -> tuple[float, float]:
 def per_joint(value: Any, joints: Sequence[str], what: str, file: str, default: float | None = None) -> Array:
     """(n,) of one number, of a list, or of a table {pattern = number} (regular expressions for whole names).
 
-    An exact name beats a pattern, of two patterns the later counts. Raises InputError: another length, a pattern that fits no joint,
-    a joint without a number where there is no default.
+    An exact name beats a pattern, of two patterns the later counts. Raises InputError: another length, a pattern that
+    fits no joint, a joint without a number where there is no default.
     """
     n = len(joints)
     if isinstance(value, Mapping):
@@ -160,8 +174,11 @@ def _require(policy: Mapping[str, Any], observation: Sequence[Any], file: str) -
     parts = [f"[policy] {', '.join(missing)}"] if missing else []
     parts += [] if observation else ["[[observation]] terms"]
     if parts:
-        raise InputError(f"the network's metadata does not tell {' and '.join(parts)}", file,
-                         hint="write them into a TOML: gloam.Policy(\"x.onnx\", \"x.toml\"), docs/policies.md")
+        raise InputError(
+            f"the network's metadata does not tell {' and '.join(parts)}",
+            file,
+            hint='write them into a TOML: gloam.Policy("x.onnx", "x.toml"), docs/policies.md',
+        )
 
 
 def _command_ranges(value: Any, file: str) -> dict[str, tuple[float, float]]:
@@ -178,23 +195,34 @@ def build_spec(settings: Mapping[str, Any], file: str) -> PolicySpec:
     _check_keys(policy, POLICY_KEYS, "[policy]", file)
     _require(policy, observation, file)
     joints = _names(policy["joints"], file)
-    numbers = {key: per_joint(policy[key], joints, key, file, default)
-               for key, default in (("kp", None), ("kd", None), ("action_scale", None), ("default_positions", 0.0))}
-    limit = per_joint(policy["torque_limit"], joints, "torque_limit", file, math.inf) if "torque_limit" in policy \
+    numbers = {
+        key: per_joint(policy[key], joints, key, file, default)
+        for key, default in (("kp", None), ("kd", None), ("action_scale", None), ("default_positions", 0.0))
+    }
+    limit = (
+        per_joint(policy["torque_limit"], joints, "torque_limit", file, math.inf)
+        if "torque_limit" in policy
         else np.full(len(joints), math.inf)
+    )
     for key in ("kp", "kd"):
         if (numbers[key] < 0).any():
             raise InputError(f"{key} of {joints[int(np.argmin(numbers[key]))]} is negative", file)
     start = policy.get("history_start", "repeat")
     if start not in ("repeat", "zeros"):
-        raise InputError(f"history_start is \"repeat\" or \"zeros\", not {start!r}", file)
+        raise InputError(f'history_start is "repeat" or "zeros", not {start!r}', file)
     renamed = policy.get("model_joints", {})
     if not isinstance(renamed, Mapping):
         raise InputError("model_joints is a table {policy's name = model's name}", file)
     _check_keys(renamed, joints, "model_joints", file)
-    return PolicySpec(joints=joints, torque_limit=limit, terms=tuple(_term(t, len(joints), file) for t in observation),
-                      action_clip=_range(policy.get("action_clip", math.inf), "action_clip", file),
-                      rate=_finite(policy.get("rate", 50.0), "rate", file, 0.0), history_start=start,
-                      gait_period=_finite(policy.get("gait_period", 1.0), "gait_period", file, 0.0),
-                      command_ranges=_command_ranges(policy.get("command_ranges", {}), file),
-                      model_joints={k: str(v) for k, v in renamed.items()}, **numbers)
+    return PolicySpec(
+        joints=joints,
+        torque_limit=limit,
+        terms=tuple(_term(t, len(joints), file) for t in observation),
+        action_clip=_range(policy.get("action_clip", math.inf), "action_clip", file),
+        rate=_finite(policy.get("rate", 50.0), "rate", file, 0.0),
+        history_start=start,
+        gait_period=_finite(policy.get("gait_period", 1.0), "gait_period", file, 0.0),
+        command_ranges=_command_ranges(policy.get("command_ranges", {}), file),
+        model_joints={k: str(v) for k, v in renamed.items()},
+        **numbers,
+    )

@@ -1,7 +1,9 @@
 """Observation terms of policies: a closed list, the same names for Python and for controllers in C++.
 
-Frames and signs are those of legged_gym, Isaac Lab and mjlab: the base frame is the floating root body's, x forward, y left, z up.
+Frames and signs are those of legged_gym, Isaac Lab and mjlab: the base frame is the floating root body's, x forward,
+y left, z up.
 """
+
 from __future__ import annotations
 
 import difflib
@@ -34,15 +36,33 @@ TERMS: tuple[TermInfo, ...] = (
     TermInfo("base_lin_vel", 3, 0, "m/s", "velocity of the base's origin, base frame", ("base_linear_velocity",)),
     TermInfo("base_ang_vel", 3, 0, "rad/s", "angular velocity of the base, base frame", ("base_angular_velocity",)),
     TermInfo("projected_gravity", 3, 0, "1", "direction of gravity, base frame; upright: (0, 0, -1)"),
-    TermInfo("velocity_commands", 3, 0, "m/s, m/s, rad/s", "commanded vx, vy, yaw rate, heading frame",
-             ("command", "commands", "velocity_command", "generated_commands", "twist")),
+    TermInfo(
+        "velocity_commands",
+        3,
+        0,
+        "m/s, m/s, rad/s",
+        "commanded vx, vy, yaw rate, heading frame",
+        ("command", "commands", "velocity_command", "generated_commands", "twist"),
+    ),
     TermInfo("command_lin_vel", 2, 0, "m/s", "commanded vx, vy"),
     TermInfo("command_ang_vel", 1, 0, "rad/s", "commanded yaw rate"),
-    TermInfo("joint_pos", 0, 1, "rad", "positions of the policy's joints less their default positions",
-             ("joint_pos_rel", "dof_pos")),
+    TermInfo(
+        "joint_pos",
+        0,
+        1,
+        "rad",
+        "positions of the policy's joints less their default positions",
+        ("joint_pos_rel", "dof_pos"),
+    ),
     TermInfo("joint_vel", 0, 1, "rad/s", "velocities of the policy's joints", ("joint_vel_rel", "dof_vel")),
-    TermInfo("last_action", 0, 1, "1", "the network's previous output, after its clip; 0 at first",
-             ("actions", "action", "last_actions")),
+    TermInfo(
+        "last_action",
+        0,
+        1,
+        "1",
+        "the network's previous output, after its clip; 0 at first",
+        ("actions", "action", "last_actions"),
+    ),
     TermInfo("phase", 2, 0, "1", "sine and cosine of the first leg's gait phase", ("gait_phase",)),
     TermInfo("sin_phase", 2, 0, "1", "sines of the two legs' gait phases, half a period apart"),
     TermInfo("cos_phase", 2, 0, "1", "cosines of the two legs' gait phases"),

@@ -72,6 +72,9 @@ class DeclaredTask(Task):
         self.actions = parse_actions(actions)
         self.rewards = parse_rewards(reward)
         self.terminations = parse_terminations(termination)
+        judged = [one.metric for one in (*self.rewards, *self.terminations)]
+        seen = [one.kind == "metric" for one in self.observations]
+        self.uses_metrics = any(seen) or any(metric is not None for metric in judged)
         takes_time = any(observation.kind in ("lidar", "topic") for observation in self.observations)
         self.settle = settle if settle is not None else control_interval if takes_time else 0.0
 
@@ -120,7 +123,8 @@ class _DeclaredWorld(TaskWorld):
     def begin(self, rng: np.random.Generator, options: Mapping[str, Any]) -> None:
         if options:
             raise ValueError(f"this environment has no options of reset, given are {sorted(options)}")
-        self._metrics.begin()
+        if self._task.uses_metrics:
+            self._metrics.begin()
         for source in self._sources.values():
             source.begin()
         self._before = {}
