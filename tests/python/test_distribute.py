@@ -266,6 +266,60 @@ def test_errors_of_one_do_not_lose_the_others(two_workers: Any, scene: Path, tmp
 
 
 @slow
+def test_rollouts_of_a_policy(two_workers: Any, tmp_path: Path) -> None:
+    pytest.importorskip("openvino")
+    pytest.importorskip("onnx")
+    from policy_fixtures import held_policy, write_scene
+
+    scene, policy = write_scene(tmp_path), held_policy(tmp_path)
+    arguments: dict[str, Any] = {"robot": "bot", "command": (0.5, 0, 0), "topics": None}
+    with pytest.raises(gloam.UsageError, match="needs a duration above 0 s, not None"):
+        distribute.rollouts(scene, policy, 2, out=tmp_path / "out", **arguments)
+    report = distribute.rollouts(scene, policy, 2, out=tmp_path / "out", duration=0.5, **arguments)
+    with gloam.load(scene, seed=2) as sim:
+        policy.attach(sim, "bot").command(vx=0.5)
+        sim.run_until(time=0.5)
+        assert report.tasks[1].values["hash"] == f"{sim.hash:016x}" and report.tasks[1].values["steps"] == 100
+    with pytest.raises(gloam.UsageError, match="another request"):
+        distribute.rollouts(scene, policy, 2, out=tmp_path / "out", duration=0.6, **arguments)
+    again = distribute.rollouts(scene, policy, 2, out=tmp_path / "out", duration=0.6, overwrite=True, **arguments)
+    assert [task.values["steps"] for task in again.done] == [120, 120]
+
+
+@slow
+def test_scenes_from_code_and_settings(two_workers: Any, scene: Path, tmp_path: Path) -> None:
+    made = gloam.Scene(scene)
+    made["sim.timestep"] = 0.002
+
+    def job(sim: gloam.Simulation, seed: int, folder: Path) -> dict[str, Any]:
+        return {"timestep": sim.timestep, "bodies": len(sim.world.bodies), "fovy": sim.scene["camera.cam.fovy"]}
+
+    report = distribute.rollouts(made, job, 1, out=tmp_path / "a", topics=None, settings={"camera.cam.fovy": 33.0})
+    assert report.tasks[0].values["result"] == {"timestep": 0.002, "bodies": 2, "fovy": 33.0}
+    tables = {"sim": {"timestep": 0.004}, "camera": [{"name": "cam", "position": [1, 0, 1], "fovy": 44.0}]}
+    report = distribute.rollouts(tables, job, 1, out=tmp_path / "b", topics=None)
+    assert report.tasks[0].values["result"] == {"timestep": 0.004, "bodies": 1, "fovy": 44.0}
+
+
+@slow
+def test_ctrl_c_ends_a_call_that_goes_on_later(scene: Path, tmp_path: Path) -> None:
+    pytest.importorskip("ray")
+    (tmp_path / "marks").mkdir()
+    (tmp_path / "marks" / "killed").touch()
+    command = [sys.executable, str(Path(__file__).with_name("distribute_job.py")), str(scene), str(tmp_path / "out")]
+    process = subprocess.Popen([*command, str(tmp_path / "marks"), "100"], stderr=subprocess.PIPE, text=True)
+    deadline = time.monotonic() + 120
+    while len(list((tmp_path / "out").glob("00*"))) < 3:
+        assert time.monotonic() < deadline and process.poll() is None
+        time.sleep(0.05)
+    process.send_signal(signal.SIGINT)
+    told = process.communicate(timeout=30)[1]
+    assert process.returncode != 0 and "KeyboardInterrupt" in told
+    states = _states(tmp_path / "out")
+    assert states.count("done") == len(list((tmp_path / "out").glob("00*"))) < 100 and "failed" not in states
+
+
+@slow
 def test_what_cannot_be_sent(two_workers: Any, scene: Path, tmp_path: Path) -> None:
     with gloam.load(scene) as held, pytest.raises(gloam.UsageError, match="cannot be sent to workers"):
         distribute.rollouts(scene, lambda sim, seed, folder: {"t": held.time}, 1, out=tmp_path / "out")

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import ast
 import math
 import sys
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -220,6 +222,21 @@ def _data() -> policy_data.Fetched:
         return policy_data.fetch()
     except RuntimeError as error:
         pytest.skip(str(error))
+
+
+def test_metadata_of_mjlab_is_in_its_own_words() -> None:
+    """The text that mjlab's own function makes of such lists is what the tests above read."""
+    tree = ast.parse((_data().folder / "mjlab" / "rl" / "exporter_utils.py").read_text())
+    wanted = [node for node in tree.body if isinstance(node, ast.FunctionDef) and node.name == "list_to_csv_str"]
+    names: dict[str, Any] = {}
+    exec(compile(ast.Module(wanted, []), "exporter_utils.py", "exec"), names)
+    write = names["list_to_csv_str"]
+    infinite = [-math.inf, math.inf]
+    assert write(["hip", "knee"]) == MJLAB["joint_names"] and write([20.0, 10.0]) == MJLAB["joint_stiffness"]
+    assert write([[0.25, 0.5, 1.0], 1.0, 1.0, 1.0, 2.0]) == MJLAB["observation_terms_scale"]
+    assert write([True] * 5) == MJLAB["observation_terms_flatten_history_dim"]
+    assert write([0, 0, 3, 0, 0]) == MJLAB["observation_terms_history_length"]
+    assert write([infinite, [-1.0, 1.0], infinite, infinite, infinite]) == MJLAB["observation_terms_clip"]
 
 
 def test_metadata_of_holosoma() -> None:
