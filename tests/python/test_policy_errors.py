@@ -12,6 +12,7 @@ pytest.importorskip("openvino")
 pytest.importorskip("onnx")
 import gloam  # noqa: E402
 from gloam.policy import Policy  # noqa: E402
+
 from policy_fixtures import (  # noqa: E402
     OBSERVATION,
     POLICY,
