@@ -169,19 +169,20 @@ def api_python(tally):
     return lines[-1] if ok else None
 
 
-def api_tests(tally, python, file, mark, only=None):
+def api_tests(tally, python, file, mark, only=None, preset="release", **variables):
     """One file of tests of `import gloam`, in a pytest of its own."""
-    start, report = time.time(), BUILD / "release" / f"{Path(file).stem}.xml"
+    start, report = time.time(), BUILD / preset / f"{Path(file).stem}.xml"
     report.unlink(missing_ok=True)
     result = run([python, "-m", "pytest", "-q", "-m", mark, f"--junitxml={report}", *(["-k", only] if only else []), file], timeout=3600,
-                 GLOAM_BUILT=str(BUILD / "release" / "python" / "gloam"), PYTHONPATH=str(ROOT / "python"))
+                 **{"GLOAM_BUILT": str(BUILD / preset / "python" / "gloam"), "PYTHONPATH": str(ROOT / "python"), **variables})
     suite = ElementTree.parse(report).getroot().find("testsuite").attrib if report.exists() else {}
     ran, skipped = int(suite.get("tests", 0)), int(suite.get("skipped", 0))
     failed = int(suite.get("failures", 0)) + int(suite.get("errors", 0))
     if result.returncode not in (0, 5) and not failed:  # 5: none of this mark and name
         failed = ran = 1
     if ran:
-        tally.add(file, ran - failed - skipped, failed, skipped, time.time() - start, "" if not failed else tail(result.stdout, 80))
+        name = file if preset == "release" else f"{Path(file).stem} ({preset})"
+        tally.add(name, ran - failed - skipped, failed, skipped, time.time() - start, "" if not failed else tail(result.stdout, 80))
 
 
 def slow_api_tests(tally):
@@ -189,6 +190,19 @@ def slow_api_tests(tally):
     if python := api_python(tally):
         for file in api_files():
             api_tests(tally, python, file, "slow")
+
+
+def sanitized_api_tests(tally):
+    """The memory tests of `import gloam` against a module with the address sanitizer."""
+    sys.path.insert(0, str(ROOT / "tests" / "python"))
+    import asan
+    start = time.time()
+    result = run(["./gloam", "setup", "gloam_python"], GLOAM_PRESET="asan")
+    tally.add("build asan gloam_python", int(result.returncode == 0), int(result.returncode != 0), 0, time.time() - start,
+              "" if result.returncode == 0 else tail(result.stdout))
+    python = api_python(tally)
+    for file in asan.FILES if python and result.returncode == 0 else []:
+        api_tests(tally, python, file, "slow or not slow", preset="asan", **asan.variables())
 
 
 def api_files():
@@ -394,6 +408,7 @@ def full(tally):
         "pack": pack,
         "first look at models": lambda t: python_tests(t, "tests/e2e/gallery_models.py"),
         "slow tests of Python": slow_api_tests,
+        "memory of Python under asan": sanitized_api_tests,
         "recipes": lambda t: python_tests(t, "tests/e2e/recipes.py"),
         "Mitsuba's mutations": lambda t: python_tests(t, "tests/e2e/mitsuba_mutations.py"),
     }

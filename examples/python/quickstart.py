@@ -28,8 +28,8 @@ def main() -> None:
 
     log = gloam.replay(out / "walk.mcap")
     assert log.verify().differing_steps == 0
-    fog = {"weather.visibility": 2, "render.tier": "fast"}
-    log.render(out / "fog.mp4", fog, camera="chase", width=160, height=120, rate=5, overwrite=True)
+    fog = {"weather.visibility": 12, "render.spp": 1}
+    log.render(out / "fog.mp4", fog, camera="chase", width=120, height=90, rate=4, overwrite=True)
     print(f"see {out}")
 
 

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from gloam import _core
 
-from .errors import NotFoundError, UsageError
+from .errors import InputError, NotFoundError, UsageError
 
 if TYPE_CHECKING:
     from .simulation import Simulation
@@ -103,7 +103,10 @@ class Element:
         """The handle in the World that runs."""
         generation = self._sim._look()
         if generation != self._generation:
-            self._handle = self._find()
+            try:
+                self._handle = self._find()
+            except InputError as error:  # of the old World, and gone
+                raise NotFoundError(error.message, hint=error.hint) from None
             self._generation = generation
             self._changed()
         return self._handle

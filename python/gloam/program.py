@@ -6,22 +6,26 @@ import os
 import sys
 from pathlib import Path
 
+from gloam import _core
+
 
 def program() -> Path:
     """The program: bin/gloam of the package, in a source tree that of the build folder.
 
     Raises FileNotFoundError where neither is there.
     """
-    candidates = [Path(__file__).resolve().parent / "bin" / "gloam"]
-    if built := os.environ.get("GLOAM_BUILT"):
-        candidates.append(Path(built).parents[1] / "bin" / "gloam")
+    module = Path(_core.__file__).resolve()
+    candidates = [module.parent / "bin" / "gloam", module.parents[2] / "bin" / "gloam"]
     for candidate in candidates:
         if candidate.is_file():
             return candidate
-    raise FileNotFoundError(f"the program gloam is not there: {' or '.join(map(str, candidates))}")
+    raise FileNotFoundError(f"the program gloam is not there: {' or '.join(map(str, candidates))}; ./gloam setup builds it")
 
 
 def main() -> None:
     """Becomes the program, with this process's arguments."""
-    path = str(program())
+    try:
+        path = str(program())
+    except FileNotFoundError as error:
+        sys.exit(f"gloam: error: {error}")
     os.execv(path, [path, *sys.argv[1:]])

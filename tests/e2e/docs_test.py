@@ -14,7 +14,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
 # The tests and the benches themselves: this test is part of the first, the others take an hour.
-NOT_HERE = re.compile(r"^(\./gloam (test|bench|mitsuba|gallery|pack)\b|\./gloam demo$|git clone|cd )")
+NOT_HERE = re.compile(r"^(\./gloam (test|bench|mitsuba|gallery|pack|wheel)\b|\./gloam demo$|git clone|cd )")
 NEEDS_A_CARD = re.compile(r"^GLOAM_PRESET=cuda ")  # and minutes of nvcc; gloam_cuda_test shows that it compiles
 MINUTES = 60
 WIDEST = 140  # [columns]; prose is wrapped at 120

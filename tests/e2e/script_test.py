@@ -2,6 +2,7 @@
 import fcntl
 import os
 import subprocess
+import time
 import unittest
 
 from e2e.support import ROOT
@@ -9,7 +10,7 @@ from e2e.support import ROOT
 
 def start(*arguments):
     return subprocess.run([str(ROOT / "gloam"), *arguments], cwd=ROOT, text=True, capture_output=True, stdin=subprocess.DEVNULL,
-                          timeout=60, env={**os.environ, "GLOAM_PRESET": "release"})
+                          timeout=600, env={**os.environ, "GLOAM_PRESET": "release"})
 
 
 class Locks(unittest.TestCase):
@@ -42,3 +43,24 @@ class Locks(unittest.TestCase):
         out, _ = waiting.communicate(timeout=300)
         self.assertEqual(waiting.returncode, 0)
         self.assertIn("MuJoCo", out)
+
+
+class Python(unittest.TestCase):
+    def test_a_second_start_takes_no_second(self):
+        code = "import gloam, sys; print(gloam.__version__, sys.argv[1:])"
+        self.assertEqual(start("python", "-c", code).returncode, 0)  # builds if anything is newer than the module
+        times = []
+        for _ in range(3):
+            begin = time.monotonic()
+            result = start("python", "-c", code, "a b", "c")
+            times.append(time.monotonic() - begin)
+            self.assertEqual(result.returncode, 0, result.stderr)
+            self.assertRegex(result.stdout, r"^\d+\.\d+\.\d+ \['a b', 'c'\]\n$")
+        self.assertLess(min(times), 1.0)
+
+    def test_the_folder_that_it_is_called_in_stays(self):
+        result = subprocess.run([str(ROOT / "gloam"), "python", "-c", "import os; print(os.getcwd())"], cwd="/", text=True, capture_output=True,
+                                stdin=subprocess.DEVNULL, timeout=60)
+        self.assertEqual(result.stdout, "/\n")
+        failed = start("python", "-c", "raise SystemExit(7)")
+        self.assertEqual(failed.returncode, 7)

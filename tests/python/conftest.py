@@ -13,9 +13,13 @@ from hypothesis import settings
 
 ROOT = Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT / "python"), str(ROOT / "tests")]
+os.environ["PYTHONPATH"] = str(ROOT / "python")  # of processes that tests start
 os.environ.setdefault("GLOAM_BUILT", str(ROOT / "build" / "release" / "python" / "gloam"))
 
+import fetch_data  # noqa: E402
 from e2e.support import PENDULUM  # noqa: E402
+
+os.environ.setdefault("GLOAM_TEST_DATA", str(fetch_data.default_folder()))
 
 settings.register_profile("gloam", deadline=None, derandomize=True, database=None)
 settings.load_profile("gloam")
@@ -51,7 +55,7 @@ def run_python(tmp_path: Path) -> RunPython:
     def run(code: str, *, expect: int = 0, timeout: float = 60, **variables: str) -> subprocess.CompletedProcess[str]:
         result = subprocess.run([sys.executable, "-X", "faulthandler", "-c", code], cwd=tmp_path, text=True, capture_output=True,
                                 stdin=subprocess.DEVNULL, timeout=timeout,
-                                env={**os.environ, "PYTHONPATH": str(ROOT / "python"), **variables})
+                                env={**os.environ, **variables})
         assert result.returncode == expect, f"ended with {result.returncode}\n{result.stdout}\n{result.stderr}"
         return result
 

@@ -366,6 +366,32 @@ def test_a_page_may_be_open_while_worlds_step_and_reset():
     env.close()
 
 
+def test_a_forked_process_is_told_so():
+    program = """
+import os, gloam, numpy as np
+from gloam.envs import Reach, VectorEnv
+env = VectorEnv(Reach(), 3)
+env.reset(seed=0)
+child = os.fork()
+if child == 0:
+    code = 1
+    try:
+        env.step(np.zeros((3, 6)))
+    except gloam.ForkedError:
+        env.close()
+        own = VectorEnv(Reach(), 3)
+        own.reset(seed=0)
+        own.step(np.zeros((3, 6)))
+        own.close()
+        code = 0
+    os._exit(code)
+assert os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]) == 0
+env.step(np.zeros((3, 6)))
+env.close()
+"""
+    subprocess.run([sys.executable, "-c", program], check=True, timeout=60)
+
+
 def test_the_import_registers_the_environments():
     program = "import gloam, gymnasium as gym; gym.make_vec('gloam/Reach-v0', num_envs=2).reset(seed=0)"
     subprocess.run([sys.executable, "-c", program], check=True, timeout=60)
@@ -407,3 +433,25 @@ def test_the_quadruped_stands_and_sees_its_last_action():
         np.testing.assert_array_equal(observation[-12:], action)
     assert reward > 0.8 * 1.5 * 0.02  # of the most that there is
     assert observation[8] == pytest.approx(-1, abs=0.02)  # gravity is down
+
+
+def test_a_driver_who_knows_the_way_reaches_every_goal():
+    task = PointGoal(size=(4, 3))
+    env = Env(task, max_episode_steps=150)
+    space = task.free_space(env.sim.world)
+    ring = 0.3 * np.stack([np.cos(a := np.linspace(-np.pi, np.pi, 36, endpoint=False)), np.sin(a)], axis=1)
+    for seed in range(8):
+        goal = space.sample(np.random.default_rng(seed))
+        field = space.distances(goal)
+        env.reset(seed=seed, options={"goal": goal})
+        for _ in range(150):
+            pose = env.sim.robots["cart"].pose
+            ahead = pose.p[:2] + ring
+            ways = [space.distance(field, point) + (not space.is_free(point)) for point in ahead]
+            east, north = ring[np.argmin(ways)]
+            error = (np.arctan2(north, east) - pose.yaw + np.pi) % (2 * np.pi) - np.pi
+            *_, terminated, truncated, info = env.step(np.array([max(0.0, np.cos(error)) ** 3, 2 * error]))
+            if terminated or truncated:
+                break
+        assert info["success"], seed
+        assert 0.7 < info["spl"] <= 1

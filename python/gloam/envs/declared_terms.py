@@ -27,7 +27,7 @@ from gloam.envs.terms import Term
 _KINDS: dict[str, tuple[str, ...]] = {  # and keys that go with them
     "metric": (),
     "topic": ("field",),
-    "camera": ("output", "size", "far", "tier", "spp"),
+    "camera": ("output", "size", "far", "tier", "spp", "denoise"),
     "lidar": ("rings", "columns", "far"),
     "sensor": (),
     "joints": (),
@@ -52,7 +52,8 @@ class ObservationSpec:
         """The quantity in a simulation. Errors: NotFoundError for a name that is not there."""
         keys = self.keys
         if self.kind == "camera":
-            look = {"tier": keys.get("tier", "direct"), "spp": keys.get("spp", 1)}
+            look = {"tier": "direct", "spp": 1, "denoise": False}
+            look |= {key: keys[key] for key in look if key in keys}
             size = tuple(keys.get("size", (0, 0)))
             return CameraSource(sim, self.value, keys.get("output", "rgb"), size, float(keys.get("far", 100.0)), look)
         if self.kind == "lidar":

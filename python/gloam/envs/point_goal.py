@@ -26,7 +26,7 @@ from gloam.envs.terms import Term
 Place = Literal["arena", "house"]
 Sight = Literal["image", "depth", "lidar"]
 
-WHEEL_RADIUS, TRACK = 0.07, 0.30  # assets/robots/cart [m]
+WHEEL_RADIUS, TRACK = 0.07, 0.24  # assets/robots/cart [m]
 TOP_SPEED, TOP_YAW_RATE = 0.6, 1.5  # of actions of 1 [m/s], [rad/s]
 FOOTPRINT = 0.2  # radius of the cart, with a margin [m]
 
@@ -35,7 +35,7 @@ class PointGoal(Task):
     """observation: what it sees with. place: a room of 4 x 4 m, or a generated house (house_seed, rooms).
 
     size: (width, height) of pictures [px]; beams: of a LiDAR's turn. reach: least and most way to the goal [m].
-    radius: at which a goal is reached [m]. max_range: of depth and LiDAR [m]. tier, spp: of pictures.
+    radius: at which a goal is reached [m]. max_range: of depth and LiDAR [m]. tier, spp, denoise: of pictures.
     Errors: ValueError.
     """
 
@@ -54,6 +54,7 @@ class PointGoal(Task):
         rooms: int = 4,
         tier: str = "direct",
         spp: int = 1,
+        denoise: bool = False,
     ) -> None:
         if observation not in ("image", "depth", "lidar"):
             raise ValueError(f"observation is 'image', 'depth' or 'lidar', not {observation!r}")
@@ -67,7 +68,7 @@ class PointGoal(Task):
         self.place: Place = place
         self.size, self.beams, self.reach, self.radius, self.max_range = size, beams, reach, radius, max_range
         self.house = {"seed": house_seed, "rooms": rooms}
-        self.look = {"tier": tier, "spp": spp}
+        self.look = {"tier": tier, "spp": spp, "denoise": denoise}
         # The first scan begins where the cart was before it was placed.
         self.settle = 2 * self.control_interval if observation == "lidar" else 0.0
         self._lock = threading.Lock()

@@ -56,6 +56,7 @@ class Worlds:
     def __init__(self, task: Task, num_worlds: int, settings: EnvSettings) -> None:
         if num_worlds < 1:
             raise ValueError(f"num_envs is {num_worlds}, at least one world is needed")
+        self._process = os.getpid()
         self.task = task
         self.settings = settings
         self.world = compiled(task.scene())
@@ -75,7 +76,7 @@ class Worlds:
     def close(self) -> None:
         """Ends all simulations; once is enough, more do no harm."""
         if self._pool is not None:
-            self._pool.shutdown()
+            self._pool.shutdown(wait=os.getpid() == self._process)
             self._pool = None
         for slot in self.slots:
             slot.bound.close()
@@ -158,6 +159,8 @@ class Worlds:
             return slot.last, Outcome(0.0, True, {"diverged": True})
 
     def _map(self, jobs: Sequence[Callable[[], T]]) -> list[T]:
+        if os.getpid() != self._process:  # the threads are in the other one
+            raise gloam.ForkedError("the environment belongs to the process that this one was forked from")
         if self._pool is None or len(jobs) == 1:
             return [job() for job in jobs]
         return list(self._pool.map(lambda job: job(), jobs))
