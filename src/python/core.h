@@ -92,6 +92,22 @@ auto with_progress(nb::object callable, F&& job) {
 
 using Doubles = nb::ndarray<const double, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
 
+/// While it lives this thread is in a callback or hook: what waits for the simulation is refused.
+class CallbackScope {
+ public:
+  CallbackScope() { depth() += 1; }
+  ~CallbackScope() { depth() -= 1; }
+  CallbackScope(const CallbackScope&) = delete;
+  CallbackScope& operator=(const CallbackScope&) = delete;
+  static bool is_inside() { return depth() > 0; }
+
+ private:
+  static int& depth() {
+    thread_local int depth = 0;
+    return depth;
+  }
+};
+
 /// Numbers of any sequence or array of Python's, as doubles. Raises: no numbers.
 std::vector<double> doubles(nb::handle numbers);
 /// As many, else a ValueError that names `what`.

@@ -26,6 +26,7 @@ void Inbox::put(Waiting message) {
   const nb::gil_scoped_acquire acquired;
   const nb::object callback = callback_;  // kept for as long as it runs
   if (!callback.is_valid() || callback.is_none()) return;
+  const CallbackScope inside;
   try {
     callback(message.make());
   } catch (nb::python_error& error) {

@@ -34,16 +34,32 @@ Simulation& Run::simulation() {
   return *simulation_;
 }
 
+// Calls that move time, or look at the state after it, come one at a time.
+std::unique_lock<std::mutex> Run::turn() {
+  simulation();
+  if (CallbackScope::is_inside())
+    raise("UsageError", "a callback or hook cannot wait for its own simulation",
+          "call it from another thread, or use commands");
+  {
+    const nb::gil_scoped_release released;
+    turn_.lock();
+  }
+  std::unique_lock lock(turn_, std::adopt_lock);
+  simulation();  // another thread may have closed it meanwhile
+  return lock;
+}
+
 void Run::close() {
   if (simulation_ == nullptr) return;
   if (getpid() != process_) {  // its threads are in the other process: nothing can be waited for
     static_cast<void>(simulation_.release());
     return;
   }
+  simulation_->request_stop();  // whoever steps it ends
+  const auto lock = turn();
   for (const auto& inbox : open_inboxes()) inbox->close();
   std::unique_ptr<Simulation> simulation = std::move(simulation_);
   const nb::gil_scoped_release released;
-  simulation->request_stop();
   simulation.reset();
 }
 
@@ -119,6 +135,7 @@ void Run::call_hook(const mjModel_* model, mjData_* data) {
   const nb::gil_scoped_acquire acquired;
   const nb::object hook = hook_;  // kept for as long as it runs
   if (!hook.is_valid() || hook.is_none()) return;
+  const CallbackScope inside;
   try {
     hook();
   } catch (nb::python_error& error) {
@@ -132,7 +149,7 @@ void Run::call_hook(const mjModel_* model, mjData_* data) {
 // A call that moves time: with what was written before it, and with errors of hooks after it.
 template <class F>
 void Run::guarded_call(F&& job) {
-  simulation();
+  const auto lock = turn();
   give_written();
   Status status;
   std::exception_ptr thrown;
@@ -172,7 +189,7 @@ void Run::run_until(int64_t step) {
 }
 
 void Run::resume() {
-  simulation();
+  const auto lock = turn();
   give_written();
   seen_.clear();
   simulation_->resume();
@@ -181,12 +198,14 @@ void Run::resume() {
 void Run::pause() {
   simulation();
   without_gil([&] { simulation_->pause(); });
+  const std::unique_lock lock(turn_, std::try_to_lock);
+  if (!lock.owns_lock()) return;  // somebody steps it, and will look himself
   if (is_watched_) look_at_memory();
   look_at_state();
 }
 
 void Run::reset() {
-  simulation();
+  const auto lock = turn();
   has_written_ = false;
   without_gil([&] { simulation_->pause(); });
   empty_inboxes();
@@ -198,7 +217,7 @@ void Run::reset() {
 }
 
 void Run::recompile(const World& world) {
-  simulation();
+  const auto lock = turn();
   give_written();
   if (has_written_.exchange(false))
     mj_setState(memory_.model.get(), memory_.data.get(), now_.data(), kState);
@@ -209,7 +228,7 @@ void Run::recompile(const World& world) {
 }
 
 void Run::restore(const Checkpoint& checkpoint) {
-  simulation();
+  const auto lock = turn();
   has_written_ = false;
   without_gil([&] { simulation_->pause(); });
   empty_inboxes();
@@ -236,6 +255,7 @@ void Run::set_hook(nb::object hook) {
 const PhysicsMemory& Run::memory() {
   simulation();
   if (!is_watched_) {
+    const auto lock = turn();
     look_at_memory();
     is_watched_ = true;
     if (simulation_->paused()) look_at_state();

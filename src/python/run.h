@@ -51,6 +51,7 @@ class Run {
   nb::object& hook() { return hook_; }
 
  private:
+  std::unique_lock<std::mutex> turn();
   void give_written();
   void look_at_memory();
   void look_at_state();
@@ -64,6 +65,7 @@ class Run {
   std::unique_ptr<Simulation> simulation_;
   nb::object keep_;  // made the memory, if it is not the simulation's own
   const pid_t process_ = getpid();
+  std::mutex turn_;
   PhysicsMemory memory_;
   int64_t generation_ = 0;
   bool is_watched_ = false;   // Python holds arrays of the memory

@@ -11,6 +11,7 @@ import time
 from pathlib import Path
 
 import gloam
+import numpy as np
 import pytest
 from scenes import ball_file, ball_scene
 
@@ -88,6 +89,47 @@ def test_several_threads_share_a_simulation(tmp_path: Path) -> None:
             thread.join(60)
         assert not any(t.is_alive() for t in threads), "no dead wait"
         assert not errors
+
+
+def test_threads_that_step_take_turns(tmp_path: Path) -> None:
+    with gloam.load(ball_file(tmp_path)) as alone:
+        alone.step(600)
+        wanted = alone.hash
+    with gloam.load(ball_file(tmp_path)) as sim:
+        qpos = sim.memory.array("qpos")
+
+        def step() -> None:
+            for _ in range(100):
+                sim.step(2)
+
+        threads = [threading.Thread(target=step) for _ in range(3)]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join(60)
+        assert sim.step_count == 600 and sim.hash == wanted and np.isfinite(qpos).all()
+
+
+def test_a_callback_that_steps_is_told(tmp_path: Path) -> None:
+    with gloam.load(ball_file(tmp_path)) as sim:
+        sim.sensors["where"].open(callback=lambda sample: sim.step())
+        with pytest.raises(gloam.UsageError, match="callback"):
+            for _ in range(50):
+                sim.step(2)
+        sim.sensors["where"].close()
+        sim.on_step(lambda memory: sim.reset())
+        with pytest.raises(gloam.UsageError, match="callback"):
+            sim.step()
+
+
+def test_a_thread_that_closes_ends_a_long_run(tmp_path: Path) -> None:
+    sim = gloam.load(ball_file(tmp_path))
+    closer = threading.Timer(0.2, sim.close)
+    closer.start()
+    with pytest.raises(gloam.Error):
+        sim.run_until(1e6)
+    closer.join(20)
+    assert not closer.is_alive()
 
 
 def test_other_threads_run_while_it_steps(tmp_path: Path) -> None:

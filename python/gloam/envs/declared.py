@@ -72,9 +72,9 @@ class DeclaredTask(Task):
         self.actions = parse_actions(actions)
         self.rewards = parse_rewards(reward)
         self.terminations = parse_terminations(termination)
-        judged = [one.metric for one in self.rewards] + [one.metric for one in self.terminations]
-        is_seen = any(one.kind == "metric" for one in self.observations)
-        self.uses_metrics = is_seen or any(metric is not None for metric in judged)
+        judged = [term.metric for term in self.rewards] + [end.metric for end in self.terminations]
+        seen = [one.kind == "metric" for one in self.observations]
+        self.uses_metrics = any(seen) or any(metric is not None for metric in judged)
         takes_time = any(observation.kind in ("lidar", "topic") for observation in self.observations)
         self.settle = settle if settle is not None else control_interval if takes_time else 0.0
 
