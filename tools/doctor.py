@@ -9,6 +9,7 @@ import shutil
 import socket
 import subprocess
 import sys
+import sysconfig
 import tempfile
 from pathlib import Path
 
@@ -65,6 +66,9 @@ def checks():
     for tool, package in [("python3", "python3"), ("cmake", "cmake"), ("ninja", "ninja-build"), ("g++", "g++")]:
         path = shutil.which(tool)
         yield check(tool, path, path or "missing", f"apt-get install {package} (./gloam setup does it)")
+    headers = Path(sysconfig.get_path("include")) / "Python.h"
+    yield check("Python for import gloam", sys.version_info >= (3, 11) and headers.exists(), f"{platform.python_version()}, headers "
+                f"{'here' if headers.exists() else 'missing'}", "3.11 or newer; apt-get install python3-dev (./gloam python does it)", needed=False)
     missing = [p for p in packages("run_packages") if installed(p) is False]
     yield check("Debian packages", not missing, "all" if not missing else "missing: " + " ".join(missing),
                 "apt-get install " + " ".join(missing))

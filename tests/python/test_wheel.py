@@ -95,7 +95,7 @@ def check(wheel: Path, base: str, folder: Path) -> None:
     assert there["rgb"] == here["rgb"], "the same picture, so the same denoiser"
     version = run("/usr/bin/env", "-i", "PATH=/nonexistent", python.parent / "gloam", "--version", cwd=folder)
     assert version.startswith("gloam 0.")
-    assert run(python, "-m", "gloam", "--version", cwd=folder) == version
+    assert run(python, "-I", "-m", "gloam", "--version", cwd=folder) == version
 
 
 def test_wheel_runs_where_nothing_else_is(tmp_path: Path) -> None:
