@@ -46,7 +46,9 @@ def decoded(header: bytes, packed: bytes) -> NDArray[Any]:
 @settings(deadline=None, max_examples=50)
 @given(st.integers(1, 9), st.integers(1, 9), st.integers(1, 4), st.sampled_from([np.uint8, np.uint16]), st.randoms())
 def test_png_holds_the_picture(height: int, width: int, channels: int, kind: Any, random: Any) -> None:
-    picture = np.random.default_rng(random.getrandbits(32)).integers(0, np.iinfo(kind).max, (height, width, channels), kind)
+    picture = np.random.default_rng(random.getrandbits(32)).integers(
+        0, np.iinfo(kind).max, (height, width, channels), kind
+    )
     found = dict(chunks(notebook.png(picture)))
     assert np.array_equal(decoded(found[b"IHDR"], found[b"IDAT"]), picture)
 
@@ -56,8 +58,16 @@ def test_png_of_a_strided_view_is_that_of_its_copy() -> None:
     assert notebook.png(picture) == notebook.png(picture.copy())
 
 
-@pytest.mark.parametrize("bad", [np.zeros((4, 4, 5), np.uint8), np.zeros((4, 4), np.float32), np.zeros(4, np.uint8), None,
-                                 np.zeros((0, 4, 3), np.uint8)])
+@pytest.mark.parametrize(
+    "bad",
+    [
+        np.zeros((4, 4, 5), np.uint8),
+        np.zeros((4, 4), np.float32),
+        np.zeros(4, np.uint8),
+        None,
+        np.zeros((0, 4, 3), np.uint8),
+    ],
+)
 def test_png_refuses_what_is_no_picture(bad: Any) -> None:
     with pytest.raises(ValueError):
         notebook.png(bad)
@@ -76,8 +86,15 @@ def test_animation_holds_every_picture() -> None:
     assert all(over / under == 0.25 for over, under in delays)
 
 
-@pytest.mark.parametrize("pictures, rate", [([], 10), ([np.zeros((2, 2), np.uint8)], 0), ([np.zeros((2, 2), np.uint8)], float("nan")),
-                                            ([np.zeros((2, 2), np.uint8), np.zeros((2, 3), np.uint8)], 1)])
+@pytest.mark.parametrize(
+    "pictures, rate",
+    [
+        ([], 10),
+        ([np.zeros((2, 2), np.uint8)], 0),
+        ([np.zeros((2, 2), np.uint8)], float("nan")),
+        ([np.zeros((2, 2), np.uint8), np.zeros((2, 3), np.uint8)], 1),
+    ],
+)
 def test_animation_refuses(pictures: list[Any], rate: float) -> None:
     with pytest.raises(ValueError):
         notebook.Animation(pictures, rate)
