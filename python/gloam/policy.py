@@ -105,7 +105,9 @@ class Policy:
         Raises NotFoundError: joints or actuators that the robot has not; UnsupportedError: actuators that take no
         torque; UsageError: a timestep that does not divide the policy's period, a robot that is driven already.
         """
-        name = robot if isinstance(robot, str) else robot.name
+        name = robot if isinstance(robot, str) else getattr(robot, "name", None)
+        if name is None:
+            raise TypeError(f"a robot or its name is expected, not {robot!r}")
         if name and name not in sim.robots:
             sim.robots[name]  # raises, with the nearest name
         return PolicyDriver(self, sim, name)

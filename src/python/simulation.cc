@@ -209,7 +209,7 @@ void bind_view(nb::module_& m) {
         ViewOptions options;
         options.port = port;
         options.camera = camera;
-        if (render.size() > 0) options.render = render_options(render);
+        if (!render.empty()) options.render = render_options(render);
         return take(without_gil([&] { return ViewServer::start(run.simulation(), options); }));
       },
       nb::arg("run"), nb::arg("port") = 0, nb::arg("camera") = "free",

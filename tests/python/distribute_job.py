@@ -2,6 +2,7 @@
 COUNT."""
 
 import os
+import signal
 import sys
 import time
 from pathlib import Path
@@ -27,6 +28,7 @@ def step(sim: gloam.Simulation, seed: int, folder: Path) -> dict[str, int]:
 
 
 if __name__ == "__main__":
+    signal.signal(signal.SIGINT, signal.default_int_handler)  # also where the test runs in the background
     os.environ["GLOAM_TEST_MARKS"] = sys.argv[3]
     report = distribute.rollouts(
         sys.argv[1], step, int(sys.argv[4]), out=sys.argv[2], topics=None, workers=2, progress=False

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import onnx
+import pytest
 from gloam.policy import Policy
 from onnx import TensorProto, helper, numpy_helper
 
@@ -52,6 +54,25 @@ term = "joint_vel"
 [[observation]]
 term = "velocity_commands"
 """
+
+
+# As mjlab 1.6's rl/exporter_utils.py writes it: lists with commas, parts of entries with semicolons, three decimals,
+# numbers also for truth.
+MJLAB = {
+    "run_path": "local",
+    "joint_names": "hip,knee",
+    "joint_stiffness": "20.000,10.000",
+    "joint_damping": "0.500,0.250",
+    "default_joint_pos": "-0.200,0.300",
+    "command_names": "twist",
+    "observation_names": "base_ang_vel,projected_gravity,joint_pos,actions,command",
+    "observation_terms_scale": "0.250;0.500;1.000,1.000,1.000,1.000,2.000",
+    "observation_terms_flatten_history_dim": "1.000,1.000,1.000,1.000,1.000",
+    "observation_terms_history_length": "0.000,0.000,3.000,0.000,0.000",
+    "observation_terms_clip": "-inf;inf,-1.000;1.000,-inf;inf,-inf;inf,-inf;inf",
+    "action_scale": "0.500,0.250",
+}
+MJLAB_SIZE = 3 + 3 + 3 * 2 + 2 + 3
 
 
 def write_network(
@@ -115,3 +136,17 @@ def held_policy(folder: Path, terms: str = OBSERVATION, size: int = 7, extra: st
     return Policy(
         write_network(folder / "p.onnx", np.zeros((2, size)), HELD), write_settings(folder, POLICY + extra + terms)
     )
+
+
+class Seen:
+    """A policy whose observations are kept."""
+
+    def __init__(self, policy: Policy, monkeypatch: pytest.MonkeyPatch) -> None:
+        self.observations: list[np.ndarray] = []
+        infer = policy.infer
+
+        def keep(observation: Any) -> Any:
+            self.observations.append(np.array(observation))
+            return infer(observation)
+
+        monkeypatch.setattr(policy, "infer", keep)

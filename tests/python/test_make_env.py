@@ -1,5 +1,7 @@
 """Environments made of tables: names of cameras, topics and metrics, in Python and TOML."""
 
+import ctypes
+import gc
 import re
 from pathlib import Path
 
@@ -231,12 +233,14 @@ def test_resets_take_no_memory(world):
     """A stream of metrics that each reset opened anew took 0.13 MB."""
 
     def resident():
+        gc.collect()
+        ctypes.CDLL(None).malloc_trim(0)
         return int(Path("/proc/self/statm").read_text().split()[1]) * 4096
 
     env = make_env(world, TILT, COMMAND)
     for _ in range(50):
         env.reset()
     before = resident()
-    for _ in range(200):
+    for _ in range(300):
         env.reset()
-    assert resident() - before < 8e6
+    assert resident() - before < 15e6  # 39 MB, if each took that

@@ -12,6 +12,7 @@ pytest.importorskip("openvino")
 pytest.importorskip("onnx")
 import gloam  # noqa: E402
 from gloam.policy import Policy  # noqa: E402
+
 from policy_fixtures import (  # noqa: E402
     OBSERVATION,
     POLICY,
@@ -41,6 +42,8 @@ def test_names_that_the_robot_has_not(tmp_path: Path) -> None:
                 Policy(write_network(folder / "p.onnx", np.zeros((2, 7))), settings).attach(sim, "bot")
         with pytest.raises(gloam.NotFoundError, match="bot"):
             held_policy(tmp_path).attach(sim, "bt")
+        with pytest.raises(TypeError, match="a robot or its name is expected, not None"):
+            held_policy(tmp_path).attach(sim, None)  # type: ignore[arg-type]
         with pytest.raises(gloam.NotFoundError, match="has no sensor bot/giro.*did you mean 'bot/gyro'"):
             held_policy(tmp_path, '[[observation]]\nterm = "base_ang_vel"\nsensor = "giro"\n', 3).attach(sim, "bot")
         with pytest.raises(gloam.UnsupportedError, match="'gyro' has 3 numbers"):

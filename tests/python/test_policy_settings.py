@@ -12,27 +12,9 @@ import pytest
 pytest.importorskip("openvino")
 pytest.importorskip("onnx")
 import gloam  # noqa: E402
-import policy_data  # noqa: E402
-from gloam.policy import TERMS, Policy, read_policy_metadata  # noqa: E402
-from policy_fixtures import OBSERVATION, POLICY, write_network, write_settings  # noqa: E402
+from gloam.policy import TERMS, Policy  # noqa: E402
 
-# As mjlab 1.6's rl/exporter_utils.py writes it: lists with commas, parts of entries with semicolons, three decimals,
-# numbers also for truth.
-MJLAB = {
-    "run_path": "local",
-    "joint_names": "hip,knee",
-    "joint_stiffness": "20.000,10.000",
-    "joint_damping": "0.500,0.250",
-    "default_joint_pos": "-0.200,0.300",
-    "command_names": "twist",
-    "observation_names": "base_ang_vel,projected_gravity,joint_pos,actions,command",
-    "observation_terms_scale": "0.250;0.500;1.000,1.000,1.000,1.000,2.000",
-    "observation_terms_flatten_history_dim": "1.000,1.000,1.000,1.000,1.000",
-    "observation_terms_history_length": "0.000,0.000,3.000,0.000,0.000",
-    "observation_terms_clip": "-inf;inf,-1.000;1.000,-inf;inf,-inf;inf,-inf;inf",
-    "action_scale": "0.500,0.250",
-}
-MJLAB_SIZE = 3 + 3 + 3 * 2 + 2 + 3
+from policy_fixtures import MJLAB, MJLAB_SIZE, OBSERVATION, POLICY, write_network, write_settings  # noqa: E402
 
 
 def test_metadata_of_mjlab(tmp_path: Path) -> None:
@@ -76,6 +58,9 @@ def test_one_action_scale_of_mjlab_is_everybodys(tmp_path: Path) -> None:
             "0.000,0.000,4.000,0.000,0.000",
             "terms give 19 numbers, the network takes 17",
         ),
+        ("observation_terms_history_length", "0.000,0.000,nan,0.000,0.000", "history of nan"),
+        ("observation_terms_history_length", "0.000,0.000,inf,0.000,0.000", "history of inf"),
+        ("observation_terms_history_length", "0.000,0.000,2.500,0.000,0.000", "history of 2.5"),
         ("default_joint_pos", "nan,0.3", "finite"),
         ("joint_names", "hip,hip", "names hip twice"),
     ],
@@ -213,37 +198,3 @@ def test_the_toml_of_the_documentation(tmp_path: Path) -> None:
     spec = Policy(write_network(tmp_path / "p.onnx", np.zeros((2, 3))), write_settings(tmp_path, text)).spec
     assert spec.default_positions.tolist() == [0.0, 0.8] and spec.command_ranges["vy"] == (-0.5, 0.5)
     assert spec.model_joints == {"FR_hip_joint": "fr_hip"} and spec.terms[0].sensor == "imu_gyro"
-
-
-def _data() -> policy_data.Fetched:
-    try:
-        return policy_data.fetch()
-    except RuntimeError as error:
-        pytest.skip(str(error))
-
-
-def test_metadata_of_holosoma() -> None:
-    told = read_policy_metadata(_data().holosoma / "loco" / "g1_29dof" / "ppo_g1_29dof.onnx")["policy"]
-    assert len(told["joints"]) == 29 and told["joints"][3] == "left_knee_joint"
-    assert told["kp"][1] == 99.098427777 and told["kd"][28] == 1.068141502
-    assert told["command_ranges"] == {"vx": [-1.0, 1.0], "vy": [-1.0, 1.0], "yaw_rate": [-1.0, 1.0]}
-    assert told["history_start"] == "zeros"
-
-
-def test_holosoma_with_its_toml() -> None:
-    settings = Path(__file__).resolve().parents[2] / "examples" / "python" / "g1_policy.toml"
-    policy = Policy(_data().holosoma / "loco" / "g1_29dof" / "ppo_g1_29dof.onnx", settings)
-    assert policy.spec.observation_size == 100 and policy.infer(np.zeros(100)).shape == (29,)
-    assert policy.spec.default_positions[16] == 0.2 and policy.spec.default_positions[23] == -0.2  # shoulder rolls
-
-
-def test_holosoma_alone_tells_what_is_missing() -> None:
-    with pytest.raises(
-        gloam.InputError, match=r"\[policy\] action_scale, default_positions and \[\[observation\]\] terms"
-    ):
-        Policy(_data().holosoma / "loco" / "g1_29dof" / "ppo_g1_29dof.onnx")
-
-
-def test_motion_tracking_of_holosoma_is_refused_by_name() -> None:
-    with pytest.raises(gloam.UnsupportedError, match="obs, time_step"):
-        Policy(_data().holosoma / "wbt" / "ppo_g1_29dof_dancing.onnx")

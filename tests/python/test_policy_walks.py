@@ -12,8 +12,9 @@ import pytest
 
 pytest.importorskip("openvino")
 import gloam  # noqa: E402
-import policy_data  # noqa: E402
 from gloam.policy import Policy  # noqa: E402
+
+import policy_data  # noqa: E402
 
 EXAMPLES = Path(__file__).resolve().parents[2] / "examples" / "python"
 sys.path.insert(0, str(EXAMPLES))

@@ -36,6 +36,13 @@ def _entries(metadata: Mapping[str, str], key: str, count: int, file: str) -> li
     return entries
 
 
+def _length(number: float, name: str, file: str) -> int:
+    """Length of a history, which mjlab writes as a number with decimals; its 0 means none."""
+    if not number.is_integer():
+        raise InputError(f"observation term '{name}' has a history of {number:g} observations", file)
+    return max(1, int(number))
+
+
 def _mjlab_terms(metadata: Mapping[str, str], file: str) -> list[dict[str, Any]]:
     names = _split(metadata["observation_names"])
     scales = _entries(metadata, "observation_terms_scale", len(names), file)
@@ -51,7 +58,7 @@ def _mjlab_terms(metadata: Mapping[str, str], file: str) -> list[dict[str, Any]]
         if clips:
             term["clip"] = clips[i]
         if lengths:
-            term["history"] = max(1, round(lengths[i][0]))  # mjlab: 0 = no history
+            term["history"] = _length(lengths[i][0], name, file)
         if term.get("history", 1) > 1 and not (len(is_flat) > i and is_flat[i]):
             raise InputError(
                 f"observation term '{name}' has a history that is not flattened",
