@@ -11,7 +11,7 @@ from pathlib import Path
 import pack
 
 ROOT = Path(__file__).resolve().parent.parent
-# Libraries that every Linux of the tag has (PEP 600): parts of the C library, and those of GCC, of which a process has one.
+# Libraries that every Linux of the tag has (PEP 600): those of C, and those of GCC, of which a process has one.
 OF_THE_SYSTEM = re.compile(r"^(linux-vdso|ld-linux|lib(c|m|dl|rt|pthread|resolv|util|stdc\+\+|gcc_s)\.so)")
 # Where our own files look for libraries.
 OURS = {

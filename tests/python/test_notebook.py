@@ -145,3 +145,34 @@ def test_watch_gives_no_bar_where_nobody_looks(monkeypatch: pytest.MonkeyPatch) 
 
 def test_time_is_told_as_people_say_it() -> None:
     assert [progress.time_text(s) for s in (-1, 8.4, 125, 3780)] == ["0 s", "8 s", "2 min 05 s", "1 h 03 min"]
+
+
+class FakeDisplay:
+    """IPython.display.display and the handle that it gives."""
+
+    def __init__(self) -> None:
+        self.shown: list[str] = []
+
+    def __call__(self, data: dict[str, str], **_: object) -> FakeDisplay:
+        self.update(data)
+        return self
+
+    def update(self, data: dict[str, str], **_: object) -> None:
+        self.shown.append(data["text/html"])
+
+
+def test_bar_of_a_notebook_is_one_that_is_updated_and_taken_away() -> None:
+    display = FakeDisplay()
+    shown = progress.NotebookBar("compile <house>", display)
+    shown("meshes", 0.0, 1.0)
+    assert display.shown == []
+    shown("meshes", 0.5, 4.0)
+    assert 'value="0.500"' in display.shown[0] and "compile &lt;house&gt;: 50 %, meshes, 4 s left" in display.shown[0]
+    shown.close()
+    assert display.shown[-1] == "" and len(display.shown) == 2
+
+
+def test_no_notebook_is_seen_where_there_is_none(monkeypatch: pytest.MonkeyPatch) -> None:
+    assert progress.notebook_display() is None
+    monkeypatch.setattr(sys, "stderr", io.StringIO())
+    assert progress.bar("job") is None
