@@ -1,4 +1,5 @@
-"""Puts the libraries that a wheel's tree needs into it (tools/wheel.py): copies with names of their own, licences, the C library asked for."""
+"""Puts the libraries that a wheel's tree needs into it, with their licences (tools/wheel.py)."""
+
 import hashlib
 import os
 import re
@@ -10,10 +11,14 @@ from pathlib import Path
 import pack
 
 ROOT = Path(__file__).resolve().parent.parent
-# Libraries that every Linux of the tag has (PEP 600): the C library's parts, and GCC's, of which a process must have one alone.
+# Libraries that every Linux of the tag has (PEP 600): those of C, and those of GCC, of which a process has one.
 OF_THE_SYSTEM = re.compile(r"^(linux-vdso|ld-linux|lib(c|m|dl|rt|pthread|resolv|util|stdc\+\+|gcc_s)\.so)")
 # Where our own files look for libraries.
-OURS = {"bin/gloam": "$ORIGIN/../lib/gloam", "lib/libgloam.so.*": "$ORIGIN/gloam", "_core.*.so": "$ORIGIN/lib:$ORIGIN/lib/gloam"}
+OURS = {
+    "bin/gloam": "$ORIGIN/../lib/gloam",
+    "lib/libgloam.so.*": "$ORIGIN/gloam",
+    "_core.*.so": "$ORIGIN/lib:$ORIGIN/lib/gloam",
+}
 
 
 def tell(command):
@@ -30,7 +35,7 @@ def programs(folder):
 
 
 def needed(file, here):
-    """Name and file of every library that a file needs, those of the system and those whose names are in `here` apart."""
+    """Name and file of every library that a file needs, but for those of the system and those named in `here`."""
     for line in tell(["ldd", file]).splitlines():
         name, _, rest = line.strip().partition(" => ")
         name = name.split()[0] if name else ""
@@ -66,7 +71,11 @@ def copy_licences(files, folder):
         (folder / package).mkdir(parents=True, exist_ok=True)
         shutil.copy(text, folder / package)
     for info in sorted((ROOT / ".venv" / "wheels").glob("*.dist-info")):
-        for text in [path for path in info.rglob("*") if re.match(r"(LICEN|NOTICE|COPYING|third)", path.name, re.I) and path.is_file()]:
+        for text in [
+            path
+            for path in info.rglob("*")
+            if re.match(r"(LICEN|NOTICE|COPYING|third)", path.name, re.I) and path.is_file()
+        ]:
             target = folder / info.name.split("-")[0] / text.relative_to(info)
             target.parent.mkdir(parents=True, exist_ok=True)
             shutil.copy(text, target)

@@ -10,6 +10,7 @@
 What `pip wheel .` packs finds Debian's libraries on the machine; here they are copied under names of their own, so that
 another package's TBB or OpenSSL in the same process is not taken for ours, and each looks beside itself.
 """
+
 import argparse
 import hashlib
 import os
@@ -31,7 +32,9 @@ def die(text):
 
 
 def run(command, **options):
-    result = subprocess.run([str(part) for part in command], text=True, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, **options)
+    result = subprocess.run(
+        [str(part) for part in command], text=True, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, **options
+    )
     if result.returncode != 0:
         print("\n".join(result.stdout.splitlines()[-30:]), file=sys.stderr)
         die(f"{Path(command[0]).name} failed")
@@ -41,9 +44,14 @@ def run(command, **options):
 def interpreter(version):
     """The Python of that version or path, else the one that runs this."""
     asked = f"python{version}" if re.fullmatch(r"3\.\d+", version or "") else version or sys.executable
-    for env in (os.environ, {**os.environ, "PYENV_VERSION": str(version)}):  # where pyenv has it, but not as the default
+    for env in (
+        os.environ,
+        {**os.environ, "PYENV_VERSION": str(version)},
+    ):  # where pyenv has it, but not as the default
         try:
-            told = subprocess.run([asked, "-c", "import sys; print(sys.executable)"], capture_output=True, text=True, env=env)
+            told = subprocess.run(
+                [asked, "-c", "import sys; print(sys.executable)"], capture_output=True, text=True, env=env
+            )
         except OSError:
             break
         if told.returncode == 0:
@@ -60,8 +68,23 @@ def tools(python):
     if not stamp.exists() or stamp.read_text() != wanted:
         shutil.rmtree(folder, ignore_errors=True)
         run([python, "-m", "venv", "--without-pip", folder])
-        run([sys.executable, "-m", "pip", "--python", own, "install", "--quiet", "--disable-pip-version-check", "--no-deps",
-             "--require-hashes", "--only-binary=:all:", "-r", REQUIREMENTS])
+        run(
+            [
+                sys.executable,
+                "-m",
+                "pip",
+                "--python",
+                own,
+                "install",
+                "--quiet",
+                "--disable-pip-version-check",
+                "--no-deps",
+                "--require-hashes",
+                "--only-binary=:all:",
+                "-r",
+                REQUIREMENTS,
+            ]
+        )
         stamp.write_text(wanted)
     return own
 
@@ -70,13 +93,32 @@ def packed_by_pip(python, prebuilt, folder):
     """The wheel of pyproject.toml, as pip makes it."""
     options = ["-C", f"cmake.define.GLOAM_PREBUILT={prebuilt}"] if prebuilt else []
     env = {**os.environ, "PATH": f"{python.parent}:{os.environ['PATH']}"}
-    run([sys.executable, "-m", "pip", "--python", python, "wheel", "--quiet", "--disable-pip-version-check", "--no-deps",
-         "--no-build-isolation", *options, "--wheel-dir", folder, ROOT], env=env)
+    run(
+        [
+            sys.executable,
+            "-m",
+            "pip",
+            "--python",
+            python,
+            "wheel",
+            "--quiet",
+            "--disable-pip-version-check",
+            "--no-deps",
+            "--no-build-isolation",
+            *options,
+            "--wheel-dir",
+            folder,
+            ROOT,
+        ],
+        env=env,
+    )
     return next(folder.glob("gloam-*.whl"))
 
 
 def main():
-    parser = argparse.ArgumentParser(prog="./gloam wheel", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        prog="./gloam wheel", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     parser.add_argument("folder", nargs="?", type=Path, default=ROOT / "build" / "wheels")
     parser.add_argument("--python", metavar="VERSION", help="such as 3.12, or an interpreter; default: that of python3")
     parser.add_argument("--prebuilt", type=Path, metavar="FOLDER", help="a build folder that is taken as it stands")

@@ -25,7 +25,9 @@ def png(picture: ArrayLike) -> bytes:
     picture: (H, W) or (H, W, 1 … 4), uint8 or uint16, rows from the top. Raises ValueError for other shapes and types.
     """
     array = _picture(picture)
-    return b"".join([_SIGNATURE, _chunk(b"IHDR", _header(array)), _chunk(b"IDAT", _packed(array)), _chunk(b"IEND", b"")])
+    return b"".join(
+        [_SIGNATURE, _chunk(b"IHDR", _header(array)), _chunk(b"IDAT", _packed(array)), _chunk(b"IEND", b"")]
+    )
 
 
 def animated_png(pictures: Iterable[ArrayLike], rate: float = 10.0) -> bytes:
@@ -119,7 +121,9 @@ def _picture(picture: ArrayLike) -> NDArray[Any]:
     if array.ndim != 3 or array.shape[2] not in _COLOUR_TYPE or 0 in array.shape:
         raise ValueError(f"a picture is (H, W) or (H, W, 1 … 4), not {np.shape(picture)}")
     if array.dtype not in (np.uint8, np.uint16):
-        raise ValueError(f"a picture is of uint8 or uint16, not {array.dtype}; notebook.depth_picture() makes one of depth")
+        raise ValueError(
+            f"a picture is of uint8 or uint16, not {array.dtype}; notebook.depth_picture() makes one of depth"
+        )
     return array
 
 

@@ -19,7 +19,9 @@ def program() -> Path:
     for candidate in candidates:
         if candidate.is_file():
             return candidate
-    raise FileNotFoundError(f"the program gloam is not there: {' or '.join(map(str, candidates))}; ./gloam setup builds it")
+    raise FileNotFoundError(
+        f"the program gloam is not there: {' or '.join(map(str, candidates))}; ./gloam setup builds it"
+    )
 
 
 def main() -> None:

@@ -2,8 +2,8 @@
 
     ./gloam python tests/python/asan.py [ARGUMENTS OF PYTEST]
 
-builds gloam_python of the preset asan and runs FILES in this process's environment of tests. Python itself is not
-instrumented: the sanitizer is loaded before all else, takes over malloc, and sees what instrumented code and memcpy read.
+builds gloam_python of the preset asan and runs FILES, or what ARGUMENTS name. Python itself is not instrumented: the
+sanitizer is loaded before all else, takes over malloc, and sees what instrumented code and memcpy read.
 """
 
 from __future__ import annotations
@@ -23,16 +23,24 @@ FILES = ["tests/python/test_lifetime.py", "tests/python/test_dlpack.py", "tests/
 def runtime() -> str:
     """Libraries to load first: the sanitizer's, and that of C++, which it must find at once to take over exceptions."""
     names = ("libclang_rt.asan-x86_64.so", "libstdc++.so.6")
-    return " ".join(subprocess.run(["clang-19", f"-print-file-name={name}"], capture_output=True, text=True, check=True).stdout.strip()
-                    for name in names)
+    return " ".join(
+        subprocess.run(
+            ["clang-19", f"-print-file-name={name}"], capture_output=True, text=True, check=True
+        ).stdout.strip()
+        for name in names
+    )
 
 
 def variables() -> dict[str, str]:
-    """Environment of a Python whose gloam is sanitized. Freed memory is filled, so that also NumPy's own loops read other values."""
+    """Environment of a Python whose gloam is sanitized.
+
+    Freed memory is filled, so that also NumPy's own loops read other values.
+    """
     return {
         "LD_PRELOAD": runtime(),
         "PYTHONMALLOC": "malloc",
-        "ASAN_OPTIONS": "detect_leaks=0:abort_on_error=0:allocator_may_return_null=1:max_free_fill_size=1073741824:free_fill_byte=251",
+        "ASAN_OPTIONS": "detect_leaks=0:abort_on_error=0:allocator_may_return_null=1"
+        ":max_free_fill_size=1073741824:free_fill_byte=251",
         "UBSAN_OPTIONS": "print_stacktrace=1",
         "GLOAM_BUILT": str(BUILT),
         "GLOAM_ASAN": "1",

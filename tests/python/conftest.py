@@ -1,4 +1,4 @@
-"""What the tests of `import gloam` share. They see the package of the source tree and the module that GLOAM_BUILT names."""
+"""What the tests of `import gloam` share: the package of the source tree, the module that GLOAM_BUILT names."""
 
 from __future__ import annotations
 
@@ -50,12 +50,18 @@ RunPython = Callable[..., "subprocess.CompletedProcess[str]"]
 
 @pytest.fixture
 def run_python(tmp_path: Path) -> RunPython:
-    """Runs text in a Python of its own: run_python(code, expect=0, timeout=60, **variables) -> its output. A crash fails the test."""
+    """Runs text in a Python of its own: run_python(code, expect=0, timeout=60, **variables). A crash fails the test."""
 
     def run(code: str, *, expect: int = 0, timeout: float = 60, **variables: str) -> subprocess.CompletedProcess[str]:
-        result = subprocess.run([sys.executable, "-X", "faulthandler", "-c", code], cwd=tmp_path, text=True, capture_output=True,
-                                stdin=subprocess.DEVNULL, timeout=timeout,
-                                env={**os.environ, **variables})
+        result = subprocess.run(
+            [sys.executable, "-X", "faulthandler", "-c", code],
+            cwd=tmp_path,
+            text=True,
+            capture_output=True,
+            stdin=subprocess.DEVNULL,
+            timeout=timeout,
+            env={**os.environ, **variables},
+        )
         assert result.returncode == expect, f"ended with {result.returncode}\n{result.stdout}\n{result.stderr}"
         return result
 

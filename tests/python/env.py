@@ -25,7 +25,9 @@ REQUIREMENTS = Path(__file__).resolve().parent / "requirements.txt"
 def pip(python: Path, *arguments: str | Path) -> None:
     """Runs this interpreter's pip for another. RuntimeError with its last line."""
     command = [sys.executable, "-m", "pip", "--python", python, *arguments, "--quiet", "--disable-pip-version-check"]
-    result = subprocess.run([str(part) for part in command], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+    result = subprocess.run(
+        [str(part) for part in command], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True
+    )
     if result.returncode != 0:
         raise RuntimeError(f"pip: {(result.stdout.strip().splitlines() or ['failed'])[-1]}")
 
@@ -33,10 +35,13 @@ def pip(python: Path, *arguments: str | Path) -> None:
 def python_env(requirements: Path = REQUIREMENTS, base: str | None = None) -> Path:
     """An interpreter with the packages of a list with hashes; kept until the list changes.
 
-    base: interpreter of the environment; None = that of ./gloam python, for which the module was built. Raises RuntimeError.
+    base: interpreter of the environment; None = that of ./gloam python, which the module was built for.
+    Raises RuntimeError.
     """
     base = str(Path(base or ROOT / ".venv" / "python" / "bin" / "python").resolve())
-    version = subprocess.run([base, "-c", "import sys; print(sys.version)"], capture_output=True, text=True, check=True).stdout
+    version = subprocess.run(
+        [base, "-c", "import sys; print(sys.version)"], capture_output=True, text=True, check=True
+    ).stdout
     wanted = hashlib.sha256(requirements.read_bytes() + (base + version).encode()).hexdigest()[:8]
     folder = fetch_data.default_folder() / f"python-{requirements.stem}-{wanted}"
     folder.mkdir(parents=True, exist_ok=True)

@@ -1,4 +1,4 @@
-"""Arrays go to other libraries by DLPack and the buffer protocol without a copy, and outlive all that they came from."""
+"""Arrays go to other libraries by DLPack and the buffer protocol without a copy, and outlive what they came from."""
 
 from __future__ import annotations
 
@@ -31,7 +31,9 @@ def test_channels_of_a_frame_are_given_without_a_copy(pendulum: Path) -> None:
         assert array is not None and not array.flags.owndata, name
         assert np.from_dlpack(array).ctypes.data == array.ctypes.data, name
         assert np.frombuffer(memoryview(array).cast("B"), np.uint8).ctypes.data == array.ctypes.data, name
-        assert getattr(frame, "ids" if name == "ids" else name).ctypes.data == array.ctypes.data, "the same memory each time"
+        assert getattr(frame, "ids" if name == "ids" else name).ctypes.data == array.ctypes.data, (
+            "the same memory each time"
+        )
 
 
 def test_arrays_outlive_their_frame_and_simulation(pendulum: Path) -> None:

@@ -29,9 +29,15 @@ def blocks(page: Path) -> list[str]:
 
 
 def python(*arguments: str | Path, cwd: Path) -> str:
-    result = subprocess.run([sys.executable, "-X", "faulthandler", *map(str, arguments)], cwd=cwd, text=True, capture_output=True,
-                            stdin=subprocess.DEVNULL, timeout=600,
-                            env={**os.environ, "PYTHONPATH": str(ROOT / "python"), "GLOAM_HOME": str(cwd)})
+    result = subprocess.run(
+        [sys.executable, "-X", "faulthandler", *map(str, arguments)],
+        cwd=cwd,
+        text=True,
+        capture_output=True,
+        stdin=subprocess.DEVNULL,
+        timeout=600,
+        env={**os.environ, "PYTHONPATH": str(ROOT / "python"), "GLOAM_HOME": str(cwd)},
+    )
     assert result.returncode == 0, f"{arguments}\n{result.stdout[-3000:]}\n{result.stderr[-3000:]}"
     return result.stdout
 
@@ -53,7 +59,9 @@ def test_python_of_documents_runs(page: Path, clone: Path) -> None:
     python("page.py", cwd=clone)
 
 
-@pytest.mark.parametrize("name", sorted(path.name for path in (ROOT / "examples" / "python").glob("*.py") if path.name not in ELSEWHERE))
+@pytest.mark.parametrize(
+    "name", sorted(path.name for path in (ROOT / "examples" / "python").glob("*.py") if path.name not in ELSEWHERE)
+)
 def test_examples_run(name: str, clone: Path) -> None:
     python(f"examples/python/{name}", cwd=clone)
 
@@ -65,12 +73,22 @@ def test_notebooks_run(name: str, clone: Path, monkeypatch: pytest.MonkeyPatch) 
     monkeypatch.setenv("JUPYTER_RUNTIME_DIR", str(clone / "runtime"))
     notebook = nbformat.read(clone / "examples" / "python" / name, as_version=4)
     assert all(not cell.get("outputs") for cell in notebook.cells), "a notebook is kept without outputs"
-    nbclient.NotebookClient(notebook, timeout=300, kernel_name="python3", resources={"metadata": {"path": str(clone)}}).execute()
+    nbclient.NotebookClient(
+        notebook, timeout=300, kernel_name="python3", resources={"metadata": {"path": str(clone)}}
+    ).execute()
     kinds = {kind for cell in notebook.cells for output in cell.get("outputs", []) for kind in output.get("data", {})}
     assert {"image/png", "text/html"} <= kinds
-    shown: list[Any] = [output["data"]["text/html"] for cell in notebook.cells for output in cell.get("outputs", [])
-                        if "text/html" in output.get("data", {})]
-    assert any("<img" in text for text in shown) and any("<video" in text for text in shown) and any("<details" in text for text in shown)
+    shown: list[Any] = [
+        output["data"]["text/html"]
+        for cell in notebook.cells
+        for output in cell.get("outputs", [])
+        if "text/html" in output.get("data", {})
+    ]
+    assert (
+        any("<img" in text for text in shown)
+        and any("<video" in text for text in shown)
+        and any("<details" in text for text in shown)
+    )
 
 
 def test_the_package_finds_its_home() -> None:

@@ -1,6 +1,6 @@
-"""Arrays and objects outlive what they came from, and say so where they cannot. Also run under the address sanitizer (asan.py).
+"""Arrays and objects outlive what they came from, and say so where they cannot.
 
-bytes of an array are copied by memcpy, which the sanitizer watches also in NumPy.
+Also run under the address sanitizer (asan.py): bytes of an array are copied by memcpy, which it watches in NumPy, too.
 """
 
 from __future__ import annotations
@@ -43,8 +43,11 @@ def test_frames_outlive_their_stream(tmp_path: Path) -> None:
     sim = gloam.load(ball_scene(tmp_path))
     camera = sim.cameras["small"].open(("rgb", "depth", "segmentation"), **FAST)
     frames = [sim.step_until(camera) for _ in range(4)]
-    kept = {f"{i} {name}": value for i, frame in enumerate(frames)
-            for name, value in keep(rgb=frame.rgb, depth=frame.depth, ids=frame.ids, K=frame.K).items()}
+    kept = {
+        f"{i} {name}": value
+        for i, frame in enumerate(frames)
+        for name, value in keep(rgb=frame.rgb, depth=frame.depth, ids=frame.ids, K=frame.K).items()
+    }
     camera.close()
     del frames, camera
     look_at(kept)
@@ -66,8 +69,13 @@ def test_scans_outlive_their_simulation(tmp_path: Path) -> None:
 
 
 def after(sim: Any, what: str) -> None:
-    {"close": sim.close, "reset": sim.reset, "recompile": lambda: sim.recompile(sim.scene),
-     "set": lambda: sim.set("light.sun.illuminance", 100.0), "restore": lambda: sim.restore(sim.checkpoint())}[what]()
+    {
+        "close": sim.close,
+        "reset": sim.reset,
+        "recompile": lambda: sim.recompile(sim.scene),
+        "set": lambda: sim.set("light.sun.illuminance", 100.0),
+        "restore": lambda: sim.restore(sim.checkpoint()),
+    }[what]()
 
 
 @pytest.mark.parametrize("what", ["close", "reset", "recompile", "set", "restore"])

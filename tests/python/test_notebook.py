@@ -46,7 +46,9 @@ def decoded(header: bytes, packed: bytes) -> NDArray[Any]:
 @settings(deadline=None, max_examples=50)
 @given(st.integers(1, 9), st.integers(1, 9), st.integers(1, 4), st.sampled_from([np.uint8, np.uint16]), st.randoms())
 def test_png_holds_the_picture(height: int, width: int, channels: int, kind: Any, random: Any) -> None:
-    picture = np.random.default_rng(random.getrandbits(32)).integers(0, np.iinfo(kind).max, (height, width, channels), kind)
+    picture = np.random.default_rng(random.getrandbits(32)).integers(
+        0, np.iinfo(kind).max, (height, width, channels), kind
+    )
     found = dict(chunks(notebook.png(picture)))
     assert np.array_equal(decoded(found[b"IHDR"], found[b"IDAT"]), picture)
 
@@ -56,8 +58,16 @@ def test_png_of_a_strided_view_is_that_of_its_copy() -> None:
     assert notebook.png(picture) == notebook.png(picture.copy())
 
 
-@pytest.mark.parametrize("bad", [np.zeros((4, 4, 5), np.uint8), np.zeros((4, 4), np.float32), np.zeros(4, np.uint8), None,
-                                 np.zeros((0, 4, 3), np.uint8)])
+@pytest.mark.parametrize(
+    "bad",
+    [
+        np.zeros((4, 4, 5), np.uint8),
+        np.zeros((4, 4), np.float32),
+        np.zeros(4, np.uint8),
+        None,
+        np.zeros((0, 4, 3), np.uint8),
+    ],
+)
 def test_png_refuses_what_is_no_picture(bad: Any) -> None:
     with pytest.raises(ValueError):
         notebook.png(bad)
@@ -76,8 +86,15 @@ def test_animation_holds_every_picture() -> None:
     assert all(over / under == 0.25 for over, under in delays)
 
 
-@pytest.mark.parametrize("pictures, rate", [([], 10), ([np.zeros((2, 2), np.uint8)], 0), ([np.zeros((2, 2), np.uint8)], float("nan")),
-                                            ([np.zeros((2, 2), np.uint8), np.zeros((2, 3), np.uint8)], 1)])
+@pytest.mark.parametrize(
+    "pictures, rate",
+    [
+        ([], 10),
+        ([np.zeros((2, 2), np.uint8)], 0),
+        ([np.zeros((2, 2), np.uint8)], float("nan")),
+        ([np.zeros((2, 2), np.uint8), np.zeros((2, 3), np.uint8)], 1),
+    ],
+)
 def test_animation_refuses(pictures: list[Any], rate: float) -> None:
     with pytest.raises(ValueError):
         notebook.Animation(pictures, rate)
@@ -128,3 +145,34 @@ def test_watch_gives_no_bar_where_nobody_looks(monkeypatch: pytest.MonkeyPatch) 
 
 def test_time_is_told_as_people_say_it() -> None:
     assert [progress.time_text(s) for s in (-1, 8.4, 125, 3780)] == ["0 s", "8 s", "2 min 05 s", "1 h 03 min"]
+
+
+class FakeDisplay:
+    """IPython.display.display and the handle that it gives."""
+
+    def __init__(self) -> None:
+        self.shown: list[str] = []
+
+    def __call__(self, data: dict[str, str], **_: object) -> FakeDisplay:
+        self.update(data)
+        return self
+
+    def update(self, data: dict[str, str], **_: object) -> None:
+        self.shown.append(data["text/html"])
+
+
+def test_bar_of_a_notebook_is_one_that_is_updated_and_taken_away() -> None:
+    display = FakeDisplay()
+    shown = progress.NotebookBar("compile <house>", display)
+    shown("meshes", 0.0, 1.0)
+    assert display.shown == []
+    shown("meshes", 0.5, 4.0)
+    assert 'value="0.500"' in display.shown[0] and "compile &lt;house&gt;: 50 %, meshes, 4 s left" in display.shown[0]
+    shown.close()
+    assert display.shown[-1] == "" and len(display.shown) == 2
+
+
+def test_no_notebook_is_seen_where_there_is_none(monkeypatch: pytest.MonkeyPatch) -> None:
+    assert progress.notebook_display() is None
+    monkeypatch.setattr(sys, "stderr", io.StringIO())
+    assert progress.bar("job") is None

@@ -21,10 +21,26 @@ def merged(folder: Path) -> Path:
 
 def mypy(folder: Path, *files: Path) -> subprocess.CompletedProcess[str]:
     """mypy with the settings of pyproject.toml, run in `folder`. Its cache is kept beside the environment."""
-    command = [sys.executable, "-m", "mypy", "--strict", "--config-file", ROOT / "pyproject.toml", "--python-executable", sys.executable,
-               "--cache-dir", Path(sys.prefix).parent / "mypy_cache", *files]
-    return subprocess.run([str(part) for part in command], cwd=folder, text=True, capture_output=True,
-                          env={**os.environ, "MYPYPATH": str(folder), "PYTHONPATH": ""})
+    command = [
+        sys.executable,
+        "-m",
+        "mypy",
+        "--strict",
+        "--config-file",
+        ROOT / "pyproject.toml",
+        "--python-executable",
+        sys.executable,
+        "--cache-dir",
+        Path(sys.prefix).parent / "mypy_cache",
+        *files,
+    ]
+    return subprocess.run(
+        [str(part) for part in command],
+        cwd=folder,
+        text=True,
+        capture_output=True,
+        env={**os.environ, "MYPYPATH": str(folder), "PYTHONPATH": ""},
+    )
 
 
 def test_package_and_examples_have_types_throughout(tmp_path: Path) -> None:
@@ -37,7 +53,9 @@ def test_package_and_examples_have_types_throughout(tmp_path: Path) -> None:
 
 def test_a_wrong_call_is_seen(tmp_path: Path) -> None:
     merged(tmp_path)
-    (tmp_path / "wrong.py").write_text('import gloam\n\nsim = gloam.load("house.toml")\nsim.step("two")\nsim.no_such_thing\n')
+    (tmp_path / "wrong.py").write_text(
+        'import gloam\n\nsim = gloam.load("house.toml")\nsim.step("two")\nsim.no_such_thing\n'
+    )
     result = mypy(tmp_path, tmp_path / "wrong.py")
     assert result.returncode == 1
     assert 'has incompatible type "str"' in result.stdout and "no_such_thing" in result.stdout

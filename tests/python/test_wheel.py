@@ -1,4 +1,4 @@
-"""The wheel of ./gloam wheel where nothing else is: an empty environment, no tools on the path, no home, no source tree."""
+"""The wheel of ./gloam wheel where nothing else is: no tools on the path, no home, no source tree."""
 
 from __future__ import annotations
 
@@ -29,14 +29,24 @@ OF_THE_SYSTEM = re.compile(r"/(ld-linux-x86-64|lib(c|m|dl|rt|pthread|resolv|util
 
 
 def run(*command: str | Path, **options: Any) -> str:
-    result = subprocess.run([str(part) for part in command], text=True, capture_output=True, stdin=subprocess.DEVNULL, **options)
-    assert result.returncode == 0, f"{command} ends with {result.returncode}\n{result.stdout[-3000:]}\n{result.stderr[-3000:]}"
+    result = subprocess.run(
+        [str(part) for part in command], text=True, capture_output=True, stdin=subprocess.DEVNULL, **options
+    )
+    assert result.returncode == 0, (
+        f"{command} ends with {result.returncode}\n{result.stdout[-3000:]}\n{result.stderr[-3000:]}"
+    )
     return result.stdout
 
 
 def hidden(command: list[str]) -> list[str]:
     """The command in a world without the source tree, its build and the wheels, where that can be had (root)."""
-    places = {ROOT, BUILD.resolve(), (BUILD / "lib").resolve(), (ROOT / ".venv").resolve(), (ROOT / ".venv" / "wheels").resolve()}
+    places = {
+        ROOT,
+        BUILD.resolve(),
+        (BUILD / "lib").resolve(),
+        (ROOT / ".venv").resolve(),
+        (ROOT / ".venv" / "wheels").resolve(),
+    }
     script = " && ".join(f"mount -t tmpfs tmpfs '{place}'" for place in sorted(places, reverse=True)) + ' && exec "$@"'
     wrapped = ["unshare", "--mount", "sh", "-c", script, "sh"]
     can = subprocess.run([*wrapped, "true"], capture_output=True, cwd="/")
@@ -44,7 +54,9 @@ def hidden(command: list[str]) -> list[str]:
 
 
 def make_wheel(folder: Path, *options: str | Path) -> Path:
-    return Path(run(sys.executable, ROOT / "tools" / "wheel.py", folder, "--prebuilt", BUILD, *options).splitlines()[-1])
+    return Path(
+        run(sys.executable, ROOT / "tools" / "wheel.py", folder, "--prebuilt", BUILD, *options).splitlines()[-1]
+    )
 
 
 def install(wheel: Path, base: str, folder: Path) -> Path:
@@ -55,7 +67,17 @@ def install(wheel: Path, base: str, folder: Path) -> Path:
     numpy = re.search(r"^numpy==(?:.*\\\n)*.*\n", text, re.M)
     assert numpy
     (folder / "numpy.txt").write_text(numpy.group())
-    pip = [sys.executable, "-m", "pip", "--python", python, "install", "--quiet", "--disable-pip-version-check", "--no-deps"]
+    pip = [
+        sys.executable,
+        "-m",
+        "pip",
+        "--python",
+        python,
+        "install",
+        "--quiet",
+        "--disable-pip-version-check",
+        "--no-deps",
+    ]
     run(*pip, "--require-hashes", "--only-binary=:all:", "-r", folder / "numpy.txt")
     run(*pip, wheel)
     return python
@@ -67,7 +89,17 @@ def run_the_demo(python: Path, folder: Path) -> dict[str, Any]:
     elsewhere.mkdir()
     (elsewhere / "demo.py").write_text(DEMO)
     env = {"PATH": "/nonexistent", "HOME": "/nonexistent", "GLOAM_CACHE": str(folder / "cache")}
-    command = hidden(["/usr/bin/env", "-i", *(f"{name}={value}" for name, value in env.items()), str(python), "-X", "faulthandler", "demo.py"])
+    command = hidden(
+        [
+            "/usr/bin/env",
+            "-i",
+            *(f"{name}={value}" for name, value in env.items()),
+            str(python),
+            "-X",
+            "faulthandler",
+            "demo.py",
+        ]
+    )
     told: dict[str, Any] = json.loads(run(*command, cwd=elsewhere).splitlines()[-1])
     return told
 
@@ -76,10 +108,16 @@ def foreign_libraries(package: Path) -> set[str]:
     """Libraries that files of the package load, that are neither in it nor any Linux's."""
     found = set()
     files = [*package.glob("_core.*.so"), package / "bin" / "gloam", *package.glob("lib/**/*.so*")]
-    for file in (file for file in files if "plugin" not in file.parts):  # MuJoCo's plugins need it alone, which is loaded before
+    for file in (
+        file for file in files if "plugin" not in file.parts
+    ):  # MuJoCo's plugins need it alone, which is loaded before
         for line in run("ldd", file).splitlines():
             name = line.split(" (")[0].split("=>")[-1].strip()
-            if not OF_THE_SYSTEM.search("/" + name) and "linux-vdso" not in name and not os.path.realpath(name).startswith(str(package)):
+            if (
+                not OF_THE_SYSTEM.search("/" + name)
+                and "linux-vdso" not in name
+                and not os.path.realpath(name).startswith(str(package))
+            ):
                 found.add(f"{file.name}: {line.strip()}")
     return found
 
@@ -90,7 +128,9 @@ def check(wheel: Path, base: str, folder: Path) -> None:
     package = next((folder / "environment" / "lib").glob("python3.*")) / "site-packages" / "gloam"
     assert there["home"] == str(package / "share" / "gloam")
     assert foreign_libraries(package) == set(), "libraries of this machine that the wheel does not carry"
-    here = json.loads(run(sys.executable, "-c", DEMO, env={**os.environ, "PYTHONPATH": str(ROOT / "python")}).splitlines()[-1])
+    here = json.loads(
+        run(sys.executable, "-c", DEMO, env={**os.environ, "PYTHONPATH": str(ROOT / "python")}).splitlines()[-1]
+    )
     assert there["hash"] == here["hash"]
     assert there["rgb"] == here["rgb"], "the same picture, so the same denoiser"
     version = run("/usr/bin/env", "-i", "PATH=/nonexistent", python.parent / "gloam", "--version", cwd=folder)
@@ -103,10 +143,20 @@ def test_wheel_runs_where_nothing_else_is(tmp_path: Path) -> None:
     major, minor = sys.version_info[:2]
     assert re.fullmatch(rf"gloam-[\d.]+-cp{major}{minor}-cp{major}{minor}-manylinux_2_\d+_x86_64\.whl", wheel.name)
     names = zipfile.ZipFile(wheel).namelist()
-    for name in ("gloam/_core.pyi", "gloam/py.typed", "gloam/share/gloam/examples/demo.toml", "gloam/bin/gloam", "gloam/lib/libgloam.so.0.1"):
+    for name in (
+        "gloam/_core.pyi",
+        "gloam/py.typed",
+        "gloam/share/gloam/examples/demo.toml",
+        "gloam/bin/gloam",
+        "gloam/lib/libgloam.so.0.1",
+    ):
         assert name in names
-    assert not [name for name in names if "__pycache__" in name or name.startswith(("gloam/include", "gloam/lib/cmake"))]
-    carried = {name.split("/")[-1].split("-")[0] for name in names if re.fullmatch(r"gloam/lib/gloam/[^/]*\.so[.\d]*", name)}
+    assert not [
+        name for name in names if "__pycache__" in name or name.startswith(("gloam/include", "gloam/lib/cmake"))
+    ]
+    carried = {
+        name.split("/")[-1].split("-")[0] for name in names if re.fullmatch(r"gloam/lib/gloam/[^/]*\.so[.\d]*", name)
+    }
     licences = {name.split("/")[2] for name in names if ".dist-info/licenses/" in name}
     assert {"libtbb", "libembree3", "libzmq", "libopenh264"} <= carried
     assert {"libtbb12", "libembree3-3", "libzmq5", "mujoco_core", "pyoidn", "coacd", "LICENSE"} <= licences
@@ -117,7 +167,9 @@ def test_wheel_runs_where_nothing_else_is(tmp_path: Path) -> None:
 def test_wheel_of_another_python(tmp_path: Path) -> None:
     other = "3.12" if sys.version_info[:2] != (3, 12) else "3.11"
     env = {**os.environ, "PYENV_VERSION": other}
-    told = subprocess.run(["sh", "-c", f"python{other} -c 'import sys; print(sys.executable)'"], capture_output=True, text=True, env=env)
+    told = subprocess.run(
+        ["sh", "-c", f"python{other} -c 'import sys; print(sys.executable)'"], capture_output=True, text=True, env=env
+    )
     if told.returncode != 0:
         pytest.skip(f"there is no python{other} on this machine")
     base = told.stdout.strip()

@@ -26,14 +26,16 @@ REQUIREMENTS = Path(__file__).resolve().parent / "torch_requirements.txt"
 
 
 def tell(*command: str | Path) -> str:
-    result = subprocess.run([str(part) for part in command], text=True, stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
+    result = subprocess.run(
+        [str(part) for part in command], text=True, stdout=subprocess.PIPE, stderr=subprocess.STDOUT
+    )
     if result.returncode != 0:
         raise RuntimeError(f"{command[0]}: {(result.stdout.strip().splitlines() or ['failed'])[-1]}")
     return result.stdout
 
 
 def data_of(files: list[Path], library: str) -> dict[str, str]:
-    """Variables (name: version) that files look up in a library as soon as they are loaded; functions are looked up when they are called."""
+    """Variables (name: version) that files look up in a library when they are loaded; functions are looked up later."""
     found = {}
     for file in files:
         versions = re.search(rf"File: {re.escape(library)} .*\n((?: .*Name: .*\n)*)", tell("readelf", "-VW", file))
@@ -51,11 +53,19 @@ def make_empty(libraries: set[str], files: list[Path], folder: Path) -> None:
         source, versions = folder / "empty.c", folder / "versions"
         source.write_text("".join(f"char {name}[4096];\n" for name in data))
         versions.write_text("".join(f"{version} {{ *; }};\n" for version in set(data.values())) or "{ *; };\n")
-        tell("gcc", "-shared", "-o", folder / library, f"-Wl,-soname,{library}", f"-Wl,--version-script={versions}", source)
+        tell(
+            "gcc",
+            "-shared",
+            "-o",
+            folder / library,
+            f"-Wl,-soname,{library}",
+            f"-Wl,--version-script={versions}",
+            source,
+        )
 
 
 def torch_cpu() -> tuple[Path, str]:
-    """Folder to import `torch` from, and the LD_LIBRARY_PATH that it needs. RuntimeError where it cannot be made: no network."""
+    """Folder to import `torch` from, and the LD_LIBRARY_PATH that it needs. RuntimeError where there is no network."""
     wanted = hashlib.sha256(REQUIREMENTS.read_bytes() + Path(__file__).read_bytes()).hexdigest()[:8]
     root = fetch_data.default_folder() / f"torch-{sys.version_info.major}.{sys.version_info.minor}-{wanted}"
     root.mkdir(parents=True, exist_ok=True)
@@ -65,8 +75,22 @@ def torch_cpu() -> tuple[Path, str]:
         if not (root / "done").exists():
             for folder in (packages, empty):
                 shutil.rmtree(folder, ignore_errors=True)
-            tell(sys.executable, "-m", "pip", "install", "--quiet", "--disable-pip-version-check", "--no-deps", "--no-compile",
-                 "--require-hashes", "--only-binary=:all:", "--target", packages, "-r", REQUIREMENTS)
+            tell(
+                sys.executable,
+                "-m",
+                "pip",
+                "install",
+                "--quiet",
+                "--disable-pip-version-check",
+                "--no-deps",
+                "--no-compile",
+                "--require-hashes",
+                "--only-binary=:all:",
+                "--target",
+                packages,
+                "-r",
+                REQUIREMENTS,
+            )
             files = sorted((packages / "torch" / "lib").glob("*.so*"))
             asked = {name for file in files for name in re.findall(r"NEEDED.*\[(.*)\]", tell("readelf", "-d", file))}
             here = {path.name for path in packages.rglob("*.so*")}
