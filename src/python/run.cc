@@ -84,7 +84,7 @@ void Run::empty_inboxes() {
 }
 
 void Run::restart_inboxes() {
-  const int64_t step = simulation_->latest().step();
+  const int64_t step = latest().step();
   for (const auto& inbox : open_inboxes()) inbox->set_next_from(step);
 }
 
@@ -111,7 +111,7 @@ void Run::give_written() {
 }
 
 void Run::look_at_memory() {
-  PhysicsMemory now = simulation_->memory();
+  PhysicsMemory now = without_gil([&] { return simulation_->memory(); });
   if (now.data == memory_.data && now.model == memory_.model) return;
   memory_ = std::move(now);
   ++generation_;
@@ -171,11 +171,16 @@ void Run::guarded_call(F&& job) {
   check(status);
 }
 
+Snapshot Run::latest() {
+  Simulation& here = simulation();
+  return without_gil([&] { return here.latest(); });
+}
+
 void Run::step(int64_t n) {
   if (n < 0) raise("UsageError", "a number of steps is not negative");
   if (n == 0) return;
   if (n > kShortRun || has_hook_ || !inboxes_.empty()) {
-    run_until(simulation().latest().step() + n);
+    run_until(latest().step() + n);
     return;
   }
   guarded_call([&] { return without_gil([&] { return simulation_->step(n); }); });
@@ -192,7 +197,7 @@ void Run::resume() {
   const auto lock = turn();
   give_written();
   seen_.clear();
-  simulation_->resume();
+  without_gil([&] { simulation_->resume(); });
 }
 
 void Run::pause() {
@@ -278,7 +283,7 @@ nb::object Run::step_until(Inbox& inbox) {
   const Rational rate = simulation_->step_rate();
   int64_t from = inbox.next_from();
   int64_t complete = stream.complete_at(from);
-  const int64_t now = simulation_->latest().step();
+  const int64_t now = latest().step();
   without_gil([&] { stream.flush(); });
   if (complete < now) {  // time has gone on without it
     inbox.clear();
@@ -286,7 +291,7 @@ nb::object Run::step_until(Inbox& inbox) {
     complete = stream.complete_at(from);
   }
   for (;;) {
-    if (complete > simulation_->latest().step()) run_until(complete);
+    if (complete > latest().step()) run_until(complete);
     check(interruptible(
         [&] {
           stream.flush();
@@ -299,7 +304,7 @@ nb::object Run::step_until(Inbox& inbox) {
       const auto delivered = static_cast<int64_t>(std::ceil(
           message->delivery * static_cast<double>(rate.num) / static_cast<double>(rate.den) -
           1e-6));
-      if (delivered > simulation_->latest().step()) run_until(delivered);
+      if (delivered > latest().step()) run_until(delivered);
       return message->make();
     }
     while (stream.complete_at(from) <= complete) ++from;  // its model dropped that one

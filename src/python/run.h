@@ -27,6 +27,9 @@ class Run {
 
   /// Raises: closed, or this process was forked from the one that made it.
   Simulation& simulation();
+  /// The present instant. The interpreter is free meanwhile: the thread that steps answers, and may
+  /// be in a hook of Python's.
+  Snapshot latest();
   void close();
   bool is_closed() const { return simulation_ == nullptr; }
 

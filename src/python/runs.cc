@@ -31,7 +31,7 @@ class Painter {
       : renderer_(take(without_gil([&] { return SceneRenderer::create(world); }))) {}
   Frame paint(Run& run, const nb::dict& options, int64_t index) {
     const CameraRequest request = camera_request(options);
-    const Snapshot now = run.simulation().latest();
+    const Snapshot now = run.latest();
     return {take(without_gil([&] { return renderer_.render({&now, 1}, request, index); }))};
   }
 

@@ -37,7 +37,8 @@ std::unique_ptr<Run> create(const World& world, uint64_t seed, double timestep,
 void post(Run& run, decltype(Command::what) what, int64_t step, ControlLease* lease) {
   const Command command{step, std::move(what)};
   Simulation& simulation = run.simulation();
-  check(lease != nullptr ? lease->post(command) : simulation.post(command));
+  check(without_gil(
+      [&] { return lease != nullptr ? lease->post(command) : simulation.post(command); }));
 }
 
 LiveFieldId live_field(const std::string& name) {
@@ -132,7 +133,8 @@ void bind_commands(nb::class_<Run>& c) {
 }
 
 nb::dict stats_dict(Run& run) {
-  const SimulationStats stats = run.simulation().stats();
+  Simulation& simulation = run.simulation();
+  const SimulationStats stats = without_gil([&] { return simulation.stats(); });
   nb::dict made;
   made["step"] = stats.step;
   made["time"] = stats.time;
@@ -148,7 +150,7 @@ nb::dict stats_dict(Run& run) {
 class Solver {
  public:
   const Instant& at(Run& run) {
-    const Snapshot now = run.simulation().latest();
+    const Snapshot now = run.latest();
     check(instant_.solve(now));
     return instant_;
   }
@@ -248,35 +250,45 @@ void bind_simulation(nb::module_& m) {
       .def("set_pace",
            [](Run& r, const std::string& pace, double speed) {
              if (!(speed > 0)) raise("UsageError", "a speed is above 0");
-             r.simulation().set_pace(pace == "realtime"   ? Pace::kRealTime
-                                     : pace == "lockstep" ? Pace::kLockstep
-                                                          : Pace::kFast,
-                                     speed);
+             const Pace wanted = pace == "realtime"   ? Pace::kRealTime
+                                 : pace == "lockstep" ? Pace::kLockstep
+                                                      : Pace::kFast;
+             Simulation& simulation = r.simulation();
+             without_gil([&] { simulation.set_pace(wanted, speed); });
            })
       .def_prop_ro("paused", [](Run& r) { return r.simulation().paused(); })
-      .def_prop_ro("world", [](Run& r) { return r.simulation().world(); })
+      .def_prop_ro("world",
+                   [](Run& r) { return without_gil([&] { return r.simulation().world(); }); })
       .def_prop_ro("memory", [](Run& r) { return PhysicsMemory(r.memory()); })
       .def_prop_ro("generation", &Run::generation)
       .def_prop_ro("stats", &stats_dict)
-      .def_prop_ro("time", [](Run& r) { return r.simulation().latest().time(); })
-      .def_prop_ro("step_count", [](Run& r) { return r.simulation().latest().step(); })
-      .def_prop_ro("hash", [](Run& r) { return r.simulation().latest().hash(); })
+      .def_prop_ro("time", [](Run& r) { return r.latest().time(); })
+      .def_prop_ro("step_count", [](Run& r) { return r.latest().step(); })
+      .def_prop_ro("hash", [](Run& r) { return r.latest().hash(); })
       .def_prop_ro("step_rate",
                    [](Run& r) {
                      const Rational rate = r.simulation().step_rate();
                      return nb::make_tuple(rate.num, rate.den);
                    })
-      .def("check_status", [](Run& r) { check(r.simulation().status()); })
+      .def("check_status",
+           [](Run& r) { check(without_gil([&] { return r.simulation().status(); })); })
       .def(
-          "claim", [](Run& r, Robot robot) { return take(r.simulation().claim(robot)); },
+          "claim",
+          [](Run& r, Robot robot) {
+            return take(without_gil([&] { return r.simulation().claim(robot); }));
+          },
           nb::keep_alive<0, 1>())
       .def("camera_names", [](Run& r) { return r.simulation().camera_names(); })
-      .def("topics", [](Run& r) { return topic_list(take(r.simulation().topics())); })
-      .def("publish",
-           [](Run& r, const std::string& topic, nb::bytes data) {
-             const auto* begin = reinterpret_cast<const uint8_t*>(data.c_str());
-             check(r.simulation().publish(topic, {begin, data.size()}));
+      .def("topics",
+           [](Run& r) {
+             return topic_list(take(without_gil([&] { return r.simulation().topics(); })));
            })
+      .def(
+          "publish",
+          [](Run& r, const std::string& topic, nb::bytes data) {
+            const auto* begin = reinterpret_cast<const uint8_t*>(data.c_str());
+            check(without_gil([&] { return r.simulation().publish(topic, {begin, data.size()}); }));
+          })
       .def("labels", [](Run& r) {
         return label_rows(take(without_gil([&] { return r.simulation().labels(); })));
       });

@@ -25,7 +25,7 @@ std::shared_ptr<Inbox> make_inbox(Run& run, nb::object callback) {
 template <class S>
 std::shared_ptr<Inbox> open(Run& run, std::shared_ptr<Inbox> inbox,
                             Result<std::unique_ptr<S>> stream) {
-  inbox->open(take(std::move(stream)), run.simulation().latest().step());
+  inbox->open(take(std::move(stream)), run.latest().step());
   run.add(inbox);
   return inbox;
 }

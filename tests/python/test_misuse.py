@@ -153,6 +153,23 @@ def test_other_threads_run_while_it_steps(tmp_path: Path) -> None:
         assert count > 20
 
 
+def test_questions_while_it_runs_with_a_hook(tmp_path: Path) -> None:
+    code = f"""
+import gloam
+sim = gloam.load({str(ball_file(tmp_path))!r})
+sim.on_step(lambda memory: memory.time)
+sim.run("fast")
+last = 0
+while last < 2000:
+    last = sim.step_count
+    sim.time, sim.hash, sim.stats, sim.bodies["ball"].pose
+sim.pause()
+print("ended")
+"""
+    told = subprocess.run([sys.executable, "-c", code], timeout=60, capture_output=True, text=True, check=True).stdout
+    assert told == "ended\n"
+
+
 def test_ctrl_c_stops_a_long_run(tmp_path: Path) -> None:
     code = f"""
 import gloam, sys

@@ -206,7 +206,6 @@ with gloam.load(sys.argv[1]) as sim:
 
 
 @pytest.mark.slow
-@pytest.mark.xfail(reason="sim.step_count and sim.time hold the interpreter while they wait for the hook", strict=True)
 def test_background_runs_and_views_beside_a_policy(tmp_path: Path) -> None:
     """In a process of its own: what waits for the thread that steps must not hold Python, which the hook waits for."""
     policy = held_policy(tmp_path)
