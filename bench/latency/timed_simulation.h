@@ -41,6 +41,7 @@ class TimedSimulation final : public Simulation {
   Result<std::unique_ptr<ControlLease>> claim(Robot robot) override { return real_.claim(robot); }
   std::vector<LoggedCommand> take_command_log() override { return real_.take_command_log(); }
   Snapshot latest() const override { return real_.latest(); }
+  PhysicsMemory memory() override { return real_.memory(); }
   SimulationStats stats() const override { return real_.stats(); }
   Status set_step_hook(std::function<void(const mjModel_*, mjData_*)> hook) override {
     return real_.set_step_hook(std::move(hook));
