@@ -25,7 +25,8 @@ constexpr std::array kCommands = {add_demo,     add_run,     add_record, add_rep
 int run_program(int argc, char** argv) {
   CLI::App app{
       "Gloam: a robotics simulator. Physics is exactly MuJoCo, light is path-traced.\n"
-      "In the source tree also: ./gloam setup | test | bench | mitsuba | gallery | pack | doctor"};
+      "In the source tree also: ./gloam setup | test | bench | mitsuba | gallery | pack | python | "
+      "wheel | doctor"};
   app.name("gloam");
   app.require_subcommand(1);
   app.fallthrough();

@@ -17,6 +17,8 @@ const std::vector<std::pair<std::string, std::string>> kScriptCommands = {
     {"mitsuba", "Judge the path tier by Mitsuba 3"},
     {"gallery", "Make the pictures of docs/gallery"},
     {"pack", "Bundle the program for a machine with an NVIDIA card"},
+    {"python", "Start Python with the module gloam"},
+    {"wheel", "Make a Python wheel that carries every library it needs"},
     {"doctor", "Say what is missing on this machine and how to mend it"}};
 
 }  // namespace

@@ -219,7 +219,7 @@ class Simulation:
         self.recompile(scene, progress)
 
     def recompile(self, source: Scene | World, progress: ProgressLike = None) -> None:
-        """Goes on in another World: what has the same name keeps its state."""
+        """Goes on in another World: what has the same name keeps its state. At time 0, with no Command waiting, it begins anew there."""
         world = source if isinstance(source, World) else as_scene(source).compile(progress)
         self._core.recompile(world._world)
         self._take_world(world)

@@ -1,7 +1,10 @@
 #include "core.h"
 
+#include <algorithm>
 #include <condition_variable>
 #include <thread>
+
+#include "gloam/program.h"
 
 namespace gloam::python {
 namespace {
@@ -101,6 +104,15 @@ bool PythonProgress::tell(const Progress& progress) {
 void PythonProgress::rethrow() {
   const std::lock_guard lock(mutex_);
   if (error_ != nullptr) throw std::move(*error_);
+}
+
+void check_keys(const nb::dict& options, std::initializer_list<const char*> known) {
+  const std::vector<std::string> names(known.begin(), known.end());
+  for (const auto [key, value] : options) {
+    const auto name = nb::cast<std::string>(key);
+    if (std::ranges::find(names, name) == names.end())
+      raise("UsageError", "there is no option '" + name + "' here", suggest_name(name, names));
+  }
 }
 
 std::vector<double> doubles(nb::handle numbers) {

@@ -90,6 +90,9 @@ auto with_progress(nb::object callable, F&& job) {
   return take(std::move(result));
 }
 
+/// Raises a UsageError, with the nearest, for a key of `options` that is not among these.
+void check_keys(const nb::dict& options, std::initializer_list<const char*> known);
+
 using Doubles = nb::ndarray<const double, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
 
 /// While it lives this thread is in a callback or hook: what waits for the simulation is refused.

@@ -16,6 +16,8 @@ namespace {
 
 std::unique_ptr<LogStream> start(Run& run, const std::filesystem::path& file,
                                  const nb::dict& options) {
+  check_keys(options, {"overwrite", "required", "durable", "embed", "topics", "width", "height",
+                       "state_rate"});
   LogRequest request;
   request.file = file;
   const auto flag = [&](const char* key, bool* value) {

@@ -211,7 +211,7 @@ void Run::pause() {
 
 void Run::reset() {
   const auto lock = turn();
-  has_written_ = false;
+  has_written_ = has_commands_ = false;
   without_gil([&] { simulation_->pause(); });
   empty_inboxes();
   const Status status = without_gil([&] { return simulation_->post({.what = ResetSim{}}); });
@@ -221,12 +221,20 @@ void Run::reset() {
   restart_inboxes();
 }
 
+// At the initial state, with nothing that waits, it begins anew in the other World: so its log can
+// be stepped again from the beginning.
 void Run::recompile(const World& world) {
   const auto lock = turn();
   give_written();
+  const bool begins_anew = latest().step() == 0 && !has_commands_ && !has_written_;
   if (has_written_.exchange(false))
     mj_setState(memory_.model.get(), memory_.data.get(), now_.data(), kState);
-  const Status status = interruptible([&] { return simulation_->recompile(world); }, [] {});
+  Status status = interruptible([&] { return simulation_->recompile(world); }, [] {});
+  if (status.ok() && begins_anew) {
+    empty_inboxes();
+    status = without_gil([&] { return simulation_->post({.what = ResetSim{}}); });
+    restart_inboxes();
+  }
   if (is_watched_) look_at_memory();
   look_at_state();
   check(status);

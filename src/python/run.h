@@ -50,6 +50,8 @@ class Run {
   nb::object step_until(Inbox& inbox);
 
   void add(const std::shared_ptr<Inbox>& inbox);
+  /// Told of by whoever posts a Command, which may wait for the next step.
+  void note_command() { has_commands_ = true; }
   /// For the collector of cycles.
   nb::object& hook() { return hook_; }
 
@@ -75,7 +77,7 @@ class Run {
   std::vector<double> seen_;  // state when Python last got it; empty = it runs, or was never asked
   std::vector<double> now_;
   Written written_;
-  std::atomic<bool> has_written_{false};
+  std::atomic<bool> has_written_{false}, has_commands_{false};
   nb::object hook_;
   std::atomic<bool> has_hook_{false};
   std::mutex hook_mutex_;

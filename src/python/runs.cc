@@ -42,6 +42,8 @@ class Painter {
 }  // namespace
 
 RunRequest run_request(const nb::dict& options) {
+  check_keys(options, {"out", "overwrite", "cameras", "width", "height", "duration", "seed",
+                       "timestep", "rate", "mcap", "topics"});
   RunRequest request;
   const auto read = [&]<class T>(const char* key, T* value) {
     if (options.contains(key) && !options[key].is_none()) *value = nb::cast<T>(options[key]);

@@ -37,6 +37,7 @@ std::unique_ptr<Run> create(const World& world, uint64_t seed, double timestep,
 void post(Run& run, decltype(Command::what) what, int64_t step, ControlLease* lease) {
   const Command command{step, std::move(what)};
   Simulation& simulation = run.simulation();
+  run.note_command();
   check(without_gil(
       [&] { return lease != nullptr ? lease->post(command) : simulation.post(command); }));
 }
@@ -287,6 +288,7 @@ void bind_simulation(nb::module_& m) {
           "publish",
           [](Run& r, const std::string& topic, nb::bytes data) {
             const auto* begin = reinterpret_cast<const uint8_t*>(data.c_str());
+            r.note_command();
             check(without_gil([&] { return r.simulation().publish(topic, {begin, data.size()}); }));
           })
       .def("labels", [](Run& r) {

@@ -119,6 +119,8 @@ Rational rational(double rate) {
 }
 
 CameraRequest camera_request(const nb::dict& options) {
+  check_keys(options, {"camera", "outputs", "width", "height", "required", "rate", "pose", "tier",
+                       "spp", "error", "max_depth", "device", "denoise", "look", "ev100"});
   CameraRequest request;
   request.render = render_options(options);
   read_key(options, "camera", &request.camera);

@@ -16,6 +16,14 @@ import pytest
 from scenes import ball_file, ball_scene
 
 
+def test_options_that_there_are_not_raise(tmp_path: Path) -> None:
+    with gloam.load(ball_scene(tmp_path)) as sim:
+        for call in (lambda: sim.cameras["small"].open(sp=1), lambda: sim.cameras["small"].render(tierr="direct"),
+                     lambda: sim.record(tmp_path / "a.mcap", durabel=True).__enter__(), lambda: gloam.run(sim.world, tmp_path / "out", widht=3)):
+            with pytest.raises((gloam.UsageError, TypeError), match="did you mean|unexpected"):
+                call()
+
+
 def test_use_after_close(tmp_path: Path) -> None:
     sim = gloam.load(ball_scene(tmp_path))
     camera = sim.cameras["small"].open(("depth",), tier="direct", spp=1)

@@ -54,6 +54,22 @@ def test_what_is_written_is_in_the_log(sim: gloam.Simulation, tmp_path: Path) ->
     assert found.differing_steps == 0 and found.steps == 100, found
 
 
+def test_options_that_are_set_at_first_are_in_the_log(tmp_path: Path) -> None:
+    with gloam.load(ball_scene(tmp_path)) as sim:
+        camera = sim.cameras["small"].open(("depth",), tier="direct", spp=1)
+        sim.set("sim.duration", 3)
+        with sim.record(tmp_path / "run.mcap", ["/clock"]):
+            assert camera.next().index == 0
+            sim.step(50)
+        found = gloam.replay(tmp_path / "run.mcap").verify()
+        assert (found.differing_steps, found.runs) == (0, 1) and found.steps >= 50, found
+        sim.reset()
+        sim.bodies["go/ball"].push(force=(5, 0, 0))
+        sim.set("sim.duration", 4)
+        sim.step(20)
+        assert sim.bodies["go/ball"].velocity[0] > 0.1, "a Command that waits is kept"
+
+
 def test_what_is_not_finite_is_refused_and_nothing_changes(sim: gloam.Simulation) -> None:
     sim.step(5)
     qpos = sim.memory.array("qpos")
