@@ -337,6 +337,7 @@ class Simulation:
 
 @atexit.register
 def _close_all() -> None:
+    _core.destroy_deferred()
     for sim in list(_alive):
         sim.close()
 

@@ -31,6 +31,21 @@ const char* class_of(ErrorKind kind) {
   return "Error";
 }
 
+struct Deferred {
+  std::mutex mutex;
+  std::vector<std::function<void()>> streams, runs;
+};
+
+Deferred& deferred() {
+  static auto* const list = new Deferred;  // outlives all threads
+  return *list;
+}
+
+int destroy_on_main_thread(void*) {
+  destroy_deferred();
+  return 0;
+}
+
 [[noreturn]] void raise_class(const char* type, const Error& error) {
   const nb::gil_scoped_acquire acquired;  // the caller may have released it
   const nb::object cls = nb::module_::import_("gloam.errors").attr(type);
@@ -41,6 +56,26 @@ const char* class_of(ErrorKind kind) {
 }
 
 }  // namespace
+
+void destroy_when_safe(Kept kind, std::function<void()> destroy) {
+  if (!CallbackScope::is_inside()) return destroy();
+  {
+    const std::lock_guard lock(deferred().mutex);
+    (kind == Kept::kStream ? deferred().streams : deferred().runs).push_back(std::move(destroy));
+  }
+  Py_AddPendingCall(&destroy_on_main_thread, nullptr);
+}
+
+void destroy_deferred() {
+  std::vector<std::function<void()>> streams, runs;
+  {
+    const std::lock_guard lock(deferred().mutex);
+    streams.swap(deferred().streams);
+    runs.swap(deferred().runs);
+  }
+  for (const auto& destroy : streams) destroy();
+  for (const auto& destroy : runs) destroy();
+}
 
 void raise(const Error& error) { raise_class(class_of(error.kind), error); }
 

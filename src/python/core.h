@@ -111,6 +111,13 @@ class CallbackScope {
   }
 };
 
+/// Destroys something that waits for threads of a simulation: now, or, where this is one of them
+/// (the collector of cycles may run in a callback), soon on the main thread; streams first.
+enum class Kept { kStream, kRun };
+void destroy_when_safe(Kept kind, std::function<void()> destroy);
+/// What still waits to be destroyed.
+void destroy_deferred();
+
 /// Numbers of any sequence or array of Python's, as doubles. Raises: no numbers.
 std::vector<double> doubles(nb::handle numbers);
 /// As many, else a ValueError that names `what`.

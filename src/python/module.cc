@@ -14,6 +14,7 @@ NB_MODULE(_core, m) {
   m.def("suggest_name", [](const std::string& word, const std::vector<std::string>& candidates) {
     return gloam::suggest_name(word, candidates);
   });
+  m.def("destroy_deferred", &destroy_deferred);
   m.def("set_thread_count", &gloam::set_thread_count, nb::arg("n"),
         "Threads for rendering and loading; 0 = all processors. Results do not depend on it.");
   m.def("set_log_level", [](const std::string& level) {

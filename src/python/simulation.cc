@@ -13,7 +13,7 @@
 namespace gloam::python {
 namespace {
 
-std::unique_ptr<Run> create(const World& world, uint64_t seed, double timestep,
+std::shared_ptr<Run> create(const World& world, uint64_t seed, double timestep,
                             const std::string& pace, double speed, nb::object make_data) {
   SimulationOptions options;
   options.seed = seed;
@@ -30,7 +30,8 @@ std::unique_ptr<Run> create(const World& world, uint64_t seed, double timestep,
   }
   if (!make_data.is_none()) options.make_data = data_maker(make_data);
   auto made = without_gil([&] { return Simulation::create(world, options); });
-  return std::make_unique<Run>(take(std::move(made)), std::move(make_data));
+  return {new Run(take(std::move(made)), std::move(make_data)),
+          [](Run* run) { destroy_when_safe(Kept::kRun, [run] { delete run; }); }};
 }
 
 // Posts for the holder of a lease, else for everybody.

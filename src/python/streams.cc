@@ -19,7 +19,8 @@ void read_key(const nb::dict& options, const char* key, T* value) {
 std::shared_ptr<Inbox> make_inbox(Run& run, nb::object callback) {
   constexpr int kWaiting = 64;  // messages
   run.simulation();
-  return std::make_shared<Inbox>(kWaiting, std::move(callback));
+  return {new Inbox(kWaiting, std::move(callback)),
+          [](Inbox* inbox) { destroy_when_safe(Kept::kStream, [inbox] { delete inbox; }); }};
 }
 
 template <class S>

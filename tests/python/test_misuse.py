@@ -208,6 +208,30 @@ sim.run("fast")
     assert subprocess.run([sys.executable, "-c", code], timeout=60, check=False).returncode == 0
 
 
+def test_the_collector_may_run_in_a_callback(tmp_path: Path) -> None:
+    code = f"""
+import gc, time, weakref
+import gloam
+gc.disable()
+def start():
+    sim = gloam.load({str(ball_file(tmp_path))!r})
+    sim.sensors["where"].open(callback=lambda sample: sim)
+    sim.step(5)
+    return weakref.ref(sim)
+gone = start()
+assert gone() is not None
+other = gloam.load({str(ball_file(tmp_path))!r})
+other.sensors["where"].open(callback=lambda sample: gc.collect())
+other.step(5)
+other.sensors["where"]._stream.flush()
+print("freed" if gone() is None else "kept")
+sim = gloam.load({str(ball_file(tmp_path))!r})
+sim.step(10)
+"""
+    told = subprocess.run([sys.executable, "-c", code], timeout=60, capture_output=True, text=True, check=False)
+    assert (told.returncode, told.stdout) == (0, "freed\n"), told.stderr
+
+
 def test_errors_can_be_sent_between_processes() -> None:
     error = gloam.InputError("wrong", "a.toml", 3, 4, "mend it")
     again = pickle.loads(pickle.dumps(error))
