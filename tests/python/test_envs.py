@@ -389,12 +389,12 @@ assert os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]) == 0
 env.step(np.zeros((3, 6)))
 env.close()
 """
-    subprocess.run([sys.executable, "-c", program], check=True, timeout=60)
+    subprocess.run([sys.executable, "-c", program], check=True, timeout=180)
 
 
 def test_the_import_registers_the_environments():
     program = "import gloam, gymnasium as gym; gym.make_vec('gloam/Reach-v0', num_envs=2).reset(seed=0)"
-    subprocess.run([sys.executable, "-c", program], check=True, timeout=60)
+    subprocess.run([sys.executable, "-c", program], check=True, timeout=180)
 
 
 @pytest.mark.parametrize("mode", ["sync", "async"])
