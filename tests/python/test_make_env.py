@@ -44,7 +44,7 @@ def test_the_example_is_checked_and_its_goal_reached():
 
 def test_the_file_of_the_page_works(tmp_path):
     page = EXAMPLES.parents[1] / "docs" / "python_envs.md"
-    (text,) = re.findall(r"```toml\n(.*?)```", page.read_text(), re.DOTALL)
+    (text,) = re.findall(r"``` toml\n(.*?)```", page.read_text(), re.DOTALL)
     file = tmp_path / "env.toml"
     file.write_text(text.replace("walk_scene.toml", str(SCENE)))
     env = make_env(file)
