@@ -1,6 +1,7 @@
 #include "sim/loop/stepper.h"
 
 #include <algorithm>
+#include <new>
 
 #include "base/hash.h"
 #include "scene/files/mujoco_guard.h"
@@ -16,6 +17,10 @@
 namespace gloam {
 namespace {
 constexpr int kFirstSlots = 8;
+
+Error no_memory_for_a_model() {
+  return {ErrorKind::kInput, "out of memory for a copy of the model"};
+}
 
 }  // namespace
 
@@ -55,19 +60,15 @@ Status Stepper::make_memory(const DataMaker& make_data) {
     data_ = {data, DataDeleter()};
     return {};
   }
-  mjModel* copy = nullptr;
-  GLOAM_TRY_STATUS(guarded([&] { copy = mj_copyModel(nullptr, world_->model.get()); }));
-  own_model_ = {copy, ModelDeleter()};
-  take_model(*copy);
-  owns_all_ = true;
-  data_ = make_data(own_model_);
+  GLOAM_TRY_STATUS(own_all());
+  data_ = make_data({private_, &private_->model()});
   if (data_ == nullptr)
     return Error{ErrorKind::kInput, "there is no memory for physics to step in"};
   return {};
 }
 
 PhysicsMemory Stepper::memory() const {
-  if (own_model_ != nullptr) return {own_model_, data_};
+  if (owns_all_) return {{private_, &private_->model()}, data_};
   return {{world_, world_->model.get()}, data_};
 }
 
@@ -90,34 +91,55 @@ void Stepper::take_model(const mjModel& model) {
   for (const auto& effect : effects_) effect->follow_model(model_);
 }
 
+// From now on model_'s arrays that may change are this simulation's own, as the World has them.
+Status Stepper::own_all() {
+  try {
+    if (private_ == nullptr) {
+      private_ = std::make_shared<PrivateModel>(world_);
+    } else {
+      private_->renew();
+    }
+  } catch (const std::bad_alloc&) {
+    return no_memory_for_a_model();
+  }
+  take_model(private_->model());
+  owns_all_ = true;
+  return {};
+}
+
 // The model as the World has it: without what live fields have changed.
 bool Stepper::take_back_model() {
   if (!data_is_given_) {
     take_model(*world_->model);
     return true;
   }
-  mjModel* copy = own_model_.get();
-  if (!try_mujoco([&] { copy = mj_copyModel(copy, world_->model.get()); })) return false;
-  take_model(*copy);
-  owns_all_ = true;
-  return true;
+  const Status owned = own_all();
+  return owned.ok() || fail(owned.error());
 }
 
 // Live fields are written into the arrays: not into those that all simulations of the World share.
-// Masses alone need all arrays, which takes tens of milliseconds where there are large meshes.
 bool Stepper::own_the_field(LiveFieldId field) {
+  if (field == LiveFieldId::kBodyMass) return own_for_masses();
   const bool is_owned = live_ != nullptr && !live_->values[static_cast<size_t>(field)].empty();
-  if (owns_all_ || is_owned) return true;
-  if (field != LiveFieldId::kBodyMass) {
+  if (!owns_all_ && !is_owned)
     own_live_field(field, model_, &own_fields_[static_cast<size_t>(field)]);
-    return true;
+  return true;
+}
+
+// MuJoCo derives values all over the model from masses.
+bool Stepper::own_for_masses() {
+  const bool owned_all = owns_all_;
+  if (!owned_all) {
+    const Status owned = own_all();
+    if (!owned.ok()) return fail(owned.error());
   }
-  mjModel* copy = own_model_.get();
-  const bool ok = try_mujoco([&] { copy = mj_copyModel(copy, world_->model.get()); });
-  if (!ok || copy == nullptr) return fail({ErrorKind::kInput, mujoco_error_message()});
-  if (own_model_ == nullptr) own_model_ = {copy, ModelDeleter()};
-  take_model(*copy);
-  owns_all_ = true;
+  try {
+    private_->own_bounds();
+  } catch (const std::bad_alloc&) {
+    return fail(no_memory_for_a_model());
+  }
+  model_.bvh_aabb = private_->model().bvh_aabb;
+  if (owned_all) return true;
   for (int f = 0; live_ != nullptr && f < kLiveFieldCount; ++f) {  // what changed before
     const std::vector<float>& values = live_->values[static_cast<size_t>(f)];
     if (values.empty()) continue;
@@ -137,7 +159,7 @@ bool Stepper::reset() {
   failed_ = false;
   if (live_ != nullptr) {
     live_.reset();
-    if (!take_back_model()) return fail({ErrorKind::kInput, mujoco_error_message()});
+    if (!take_back_model()) return false;
   }
   step_ = since_ = 0;
   inputs_->reset();

@@ -10,6 +10,7 @@
 #include "sim/commands/applied_inputs.h"
 #include "sim/effects/effect.h"
 #include "sim/snapshots/snapshot_pool.h"
+#include "sim/state/private_model.h"
 #include "sim/state/state_layout.h"
 #include "world/world.h"
 
@@ -93,6 +94,8 @@ class Stepper {
   bool set_live(const std::shared_ptr<const LiveFields>& live);
   bool own_the_field(LiveFieldId field);
   void take_model(const mjModel& model);
+  Status own_all();
+  bool own_for_masses();
   bool take_back_model();
   Status make_memory(const DataMaker& make_data);
   void count_diagnostics();
@@ -108,10 +111,10 @@ class Stepper {
   uint64_t seed_ = 0;
   mjModel model_;  // options of its own; its arrays are the World's until a live field changes
   std::array<std::vector<std::byte>, kLiveFieldCount> own_fields_;  // of model_, where changed
-  std::shared_ptr<mjModel> own_model_;  // once masses change model_'s arrays are all this one's
-  bool owns_all_ = false;
+  std::shared_ptr<PrivateModel> private_;  // model_'s arrays are its while owns_all_
+  bool owns_all_ = false;                  // masses have changed, or data_ was given
   std::shared_ptr<mjData> data_;
-  bool data_is_given_ = false;  // by a DataMaker: it is never exchanged, own_model_ always there
+  bool data_is_given_ = false;  // by a DataMaker: it is never exchanged
   StateReader reader_;          // of data_
   DataPtr scratch_;             // for mj_setConst; made on first use
   std::unique_ptr<AppliedInputs> inputs_;

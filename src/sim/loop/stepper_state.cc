@@ -25,7 +25,7 @@ std::unique_ptr<StepperState> Stepper::save() const {
 bool Stepper::set_live(const std::shared_ptr<const LiveFields>& live) {
   if (live == live_) return true;
   live_.reset();
-  if (!take_back_model()) return fail({ErrorKind::kInput, mujoco_error_message()});
+  if (!take_back_model()) return false;
   if (live == nullptr) return true;
   constexpr auto kMass = static_cast<size_t>(LiveFieldId::kBodyMass);
   if (!live->values[kMass].empty() && scratch_ == nullptr) {
