@@ -5,9 +5,11 @@
 
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <variant>
 #include <vector>
 
+#include "gloam/result.h"
 #include "gloam/types.h"
 #include "gloam/world.h"
 
@@ -87,6 +89,11 @@ enum class LiveFieldId {
   kMaterialRoughness,    ///< (nmat) 0..1, -1 = not given: shininess counts
 };
 inline constexpr int kLiveFieldCount = static_cast<int>(LiveFieldId::kMaterialRoughness) + 1;
+const char* live_field_name(LiveFieldId field);  ///< "gravity", as World::inputs() has it
+/// Name of its array in MuJoCo, as Instant::value takes it: "opt.gravity".
+const char* live_field_array(LiveFieldId field);
+/// Error: there is none of this name; the hint tells the nearest.
+Result<LiveFieldId> find_live_field(std::string_view name);
 
 /// Replaces elements [first, first + values.size()) of a live field.
 struct SetLiveField {

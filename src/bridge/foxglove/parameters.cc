@@ -9,21 +9,10 @@ using nlohmann::json;
 
 Error bad_value(const std::string& what) { return {ErrorKind::kInput, what}; }
 
-/// A live field as a parameter: all its numbers, and where mjModel has them.
-struct FieldParameter {
-  const char* name;
-  LiveFieldId id;
-  const char* model_field;
-};
-constexpr FieldParameter kFieldParameters[] = {
-    {"gravity", LiveFieldId::kGravity, "opt.gravity"},
-    {"wind", LiveFieldId::kWind, "opt.wind"},
-    {"body_mass", LiveFieldId::kBodyMass, "body_mass"},
-    {"geom_friction", LiveFieldId::kGeomFriction, "geom_friction"},
-    {"light_diffuse", LiveFieldId::kLightDiffuse, "light_diffuse"},
-    {"light_intensity", LiveFieldId::kLightIntensity, "light_intensity"},
-    {"light_active", LiveFieldId::kLightActive, "light_active"},
-};
+constexpr LiveFieldId kFieldParameters[] = {
+    LiveFieldId::kGravity,      LiveFieldId::kWind,         LiveFieldId::kBodyMass,
+    LiveFieldId::kGeomFriction, LiveFieldId::kLightDiffuse, LiveFieldId::kLightIntensity,
+    LiveFieldId::kLightActive};
 constexpr size_t kMostNumbers = 300;  // longer fields are no parameters: nobody edits them by hand
 
 }  // namespace
@@ -62,22 +51,22 @@ std::vector<double> Parameters::field(const std::string& model_field) {
 
 void Parameters::add_live_fields() {
   Simulation& simulation = operations_.simulation();
-  for (const FieldParameter& from : kFieldParameters) {
-    const size_t count = field(from.model_field).size();
+  for (const LiveFieldId id : kFieldParameters) {
+    const size_t count = field(live_field_array(id)).size();
     if (count == 0 || count > kMostNumbers) continue;
-    const auto get = [this, from] { return json(field(from.model_field)); };
-    const auto set = [this, &simulation, from](const json& value) -> Status {
-      const size_t size = field(from.model_field).size();
+    const auto get = [this, id] { return json(field(live_field_array(id))); };
+    const auto set = [this, &simulation, id](const json& value) -> Status {
+      const size_t size = field(live_field_array(id)).size();
       const std::string what = "is an array of " + std::to_string(size) + " numbers";
       if (!value.is_array() || value.size() != size) return bad_value(what);
-      SetLiveField command{.field = from.id};
+      SetLiveField command{.field = id};
       for (const json& number : value) {
         if (!number.is_number() || !std::isfinite(number.get<float>())) return bad_value(what);
         command.values.push_back(number.get<float>());
       }
       return simulation.post(Command{.what = std::move(command)});
     };
-    parameters_[from.name] = {"float64_array", get, set};
+    parameters_[live_field_name(id)] = {"float64_array", get, set};
   }
 }
 

@@ -10,42 +10,6 @@
 namespace gloam::bridge {
 namespace {
 
-/// Name of a live field as World::inputs() has it, and of the array in MuJoCo.
-struct LiveFieldName {
-  std::string_view name;
-  const char* field;
-};
-// By LiveFieldId.
-constexpr LiveFieldName kLiveFields[kLiveFieldCount] = {
-    {"gravity", "opt.gravity"},
-    {"wind", "opt.wind"},
-    {"body_mass", "body_mass"},
-    {"geom_friction", "geom_friction"},
-    {"height_field", "hfield_data"},
-    {"light_diffuse", "light_diffuse"},
-    {"light_intensity", "light_intensity"},
-    {"light_active", "light_active"},
-    {"geom_color", "geom_rgba"},
-    {"material_color", "mat_rgba"},
-    {"material_emission", "mat_emission"},
-    {"material_specular", "mat_specular"},
-    {"material_shininess", "mat_shininess"},
-    {"material_reflectance", "mat_reflectance"},
-    {"material_metallic", "mat_metallic"},
-    {"material_roughness", "mat_roughness"},
-};
-
-Result<LiveFieldId> find_live_field(std::string_view name) {
-  const auto* found = std::ranges::find(kLiveFields, name, &LiveFieldName::name);
-  if (found != std::end(kLiveFields)) return static_cast<LiveFieldId>(found - kLiveFields);
-  std::vector<std::string> names;
-  for (const LiveFieldName& field : kLiveFields) names.emplace_back(field.name);
-  return Error{ErrorKind::kInput,
-               fmt::format("there is no live field '{}'", name.substr(0, 100)),
-               {},
-               suggest_name(name, names)};
-}
-
 // The files that options name must be those that the scene itself could name.
 Status check_files(Scene scene, const ModelSource& source) {
   std::erase_if(scene.robots, [&](const RobotOptions& o) { return source.is_own(o.file); });
@@ -91,7 +55,7 @@ Result<std::vector<double>> Operator::live_field(std::string_view name) const {
   GLOAM_TRY(const LiveFieldId id, find_live_field(name));
   const std::lock_guard lock(private_->solved_mutex);
   GLOAM_TRY_STATUS(private_->solve());
-  return private_->solved->instant.value(kLiveFields[static_cast<size_t>(id)].field);
+  return private_->solved->instant.value(live_field_array(id));
 }
 
 Status Operator::set_live_field(std::string_view name, int first, std::vector<float> values) {

@@ -62,11 +62,9 @@ class Reader {
   }
   void value(const char* key, LiveFieldId& v) {
     const auto name = json_.at(key).get<std::string>();
-    for (int field = 0; field < kLiveFieldCount; ++field) {
-      v = static_cast<LiveFieldId>(field);
-      if (name == live_field_name(v)) return;
-    }
-    throw std::out_of_range(fmt::format("there is no live field '{:.40}'", name));
+    const Result<LiveFieldId> field = find_live_field(name);
+    if (!field.ok()) throw std::out_of_range(fmt::format("there is no live field '{:.40}'", name));
+    v = *field;
   }
   template <class T>
   void value(const char* key, std::vector<T>& v) {

@@ -8,6 +8,7 @@
 
 #include "base/check.h"
 #include "base/hash.h"
+#include "base/text.h"
 #include "scene/files/mujoco_guard.h"
 
 namespace gloam {
@@ -15,6 +16,7 @@ namespace {
 
 struct FieldRow {
   const char* name;
+  const char* array;        // in MuJoCo
   float smallest, largest;  // allowed values
   const char* unit;
 };
@@ -23,14 +25,22 @@ constexpr float kAny = 1e10f;  // mjMAXVAL: beyond it MuJoCo calls a number bad
 
 // By LiveFieldId.
 constexpr FieldRow kFields[kLiveFieldCount] = {
-    {"gravity", -kAny, kAny, "m/s^2"},   {"wind", -kAny, kAny, "m/s"},
-    {"body_mass", 0, kAny, "kg"},        {"geom_friction", 0, kAny, "1, m, m"},
-    {"height_field", 0, 1, "1"},         {"light_diffuse", 0, kAny, "1"},
-    {"light_intensity", 0, kAny, "cd"},  {"light_active", 0, 1, "1"},
-    {"geom_color", 0, 1, "1"},           {"material_color", 0, 1, "1"},
-    {"material_emission", 0, kAny, "1"}, {"material_specular", 0, 1, "1"},
-    {"material_shininess", 0, 1, "1"},   {"material_reflectance", 0, 1, "1"},
-    {"material_metallic", -1, 1, "1"},   {"material_roughness", -1, 1, "1"},
+    {"gravity", "opt.gravity", -kAny, kAny, "m/s^2"},
+    {"wind", "opt.wind", -kAny, kAny, "m/s"},
+    {"body_mass", "body_mass", 0, kAny, "kg"},
+    {"geom_friction", "geom_friction", 0, kAny, "1, m, m"},
+    {"height_field", "hfield_data", 0, 1, "1"},
+    {"light_diffuse", "light_diffuse", 0, kAny, "1"},
+    {"light_intensity", "light_intensity", 0, kAny, "cd"},
+    {"light_active", "light_active", 0, 1, "1"},
+    {"geom_color", "geom_rgba", 0, 1, "1"},
+    {"material_color", "mat_rgba", 0, 1, "1"},
+    {"material_emission", "mat_emission", 0, kAny, "1"},
+    {"material_specular", "mat_specular", 0, 1, "1"},
+    {"material_shininess", "mat_shininess", 0, 1, "1"},
+    {"material_reflectance", "mat_reflectance", 0, 1, "1"},
+    {"material_metallic", "mat_metallic", -1, 1, "1"},
+    {"material_roughness", "mat_roughness", -1, 1, "1"},
 };
 
 const FieldRow& row(LiveFieldId field) { return kFields[static_cast<int>(field)]; }
@@ -99,6 +109,19 @@ void write_masses(const mjModel& world_model, std::span<const float> masses, mjM
 }  // namespace
 
 const char* live_field_name(LiveFieldId field) { return row(field).name; }
+
+const char* live_field_array(LiveFieldId field) { return row(field).array; }
+
+Result<LiveFieldId> find_live_field(std::string_view name) {
+  const auto* found = std::ranges::find(kFields, name, &FieldRow::name);
+  if (found != std::end(kFields)) return static_cast<LiveFieldId>(found - kFields);
+  std::vector<std::string> names;
+  for (const FieldRow& field : kFields) names.emplace_back(field.name);
+  return Error{ErrorKind::kInput,
+               fmt::format("there is no live field '{}'", name.substr(0, 100)),
+               {},
+               suggest_name(name, names)};
+}
 
 LiveFieldRange live_field_range(LiveFieldId field) {
   return {row(field).smallest, row(field).largest, row(field).unit};

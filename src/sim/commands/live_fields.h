@@ -12,8 +12,6 @@
 
 namespace gloam {
 
-/// "gravity", "body_mass" …
-const char* live_field_name(LiveFieldId field);
 /// Values that a field may have, and their unit.
 struct LiveFieldRange {
   double low, high;
