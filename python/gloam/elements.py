@@ -45,9 +45,6 @@ class Named(Mapping[str, T], Generic[T]):
     def __len__(self) -> int:
         return len(self._names())
 
-    def _forget(self) -> None:
-        self._made.clear()
-
     def __repr__(self) -> str:
         return f"<{len(self)} of {self._what}: {', '.join(self)}>"
 

@@ -130,24 +130,31 @@ bool PythonProgress::tell(const Progress& progress) {
         callable_(progress.what, progress.done, progress.seconds, progress.left);
     return goes_on.is_none() || nb::cast<bool>(goes_on);
   } catch (nb::python_error& error) {
-    const std::lock_guard lock(mutex_);
-    if (!error_) error_ = std::make_unique<nb::python_error>(std::move(error));
+    error_.keep(std::move(error));
     return false;
   }
 }
 
-void PythonProgress::rethrow() {
-  const std::lock_guard lock(mutex_);
-  if (error_ != nullptr) throw std::move(*error_);
+void Keywords::refuse_others() const {
+  for (const auto [key, value] : given_) {
+    const auto name = nb::cast<std::string>(key);
+    if (std::ranges::find(known_, name) == known_.end())
+      raise("UsageError", "there is no option '" + name + "' here", suggest_name(name, known_));
+  }
 }
 
-void check_keys(const nb::dict& options, std::initializer_list<const char*> known) {
-  const std::vector<std::string> names(known.begin(), known.end());
-  for (const auto [key, value] : options) {
-    const auto name = nb::cast<std::string>(key);
-    if (std::ranges::find(names, name) == names.end())
-      raise("UsageError", "there is no option '" + name + "' here", suggest_name(name, names));
+void FirstError::keep(nb::python_error&& error) {
+  const std::lock_guard lock(mutex_);
+  if (error_ == nullptr) error_ = std::make_unique<nb::python_error>(std::move(error));
+}
+
+void FirstError::rethrow() {
+  std::unique_ptr<nb::python_error> error;
+  {
+    const std::lock_guard lock(mutex_);
+    error.swap(error_);
   }
+  if (error != nullptr) throw std::move(*error);
 }
 
 std::vector<double> doubles(nb::handle numbers) {

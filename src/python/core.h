@@ -63,6 +63,18 @@ auto interruptible(F&& job, const std::function<void()>& stop) {
   return std::move(*result);
 }
 
+/// The first exception of functions that C++ calls on other threads, until a call of Python's can
+/// raise it.
+class FirstError {
+ public:
+  void keep(nb::python_error&& error);
+  void rethrow();
+
+ private:
+  std::mutex mutex_;
+  std::unique_ptr<nb::python_error> error_;
+};
+
 /// A ProgressCallback that calls a Python function, or none. Its exception stops the job and is
 /// raised by rethrow().
 class PythonProgress {
@@ -70,15 +82,14 @@ class PythonProgress {
   explicit PythonProgress(nb::object callable) : callable_(std::move(callable)) {}
   ProgressCallback callback();
   void stop() { stopped_ = true; }
-  void rethrow();
+  void rethrow() { error_.rethrow(); }
 
  private:
   bool tell(const Progress& progress);
 
   nb::object callable_;
   std::atomic<bool> stopped_{false};
-  std::mutex mutex_;
-  std::unique_ptr<nb::python_error> error_;
+  FirstError error_;
 };
 
 /// Runs a job that takes a ProgressCallback: with progress told to Python, stopped by Ctrl-C.
@@ -90,10 +101,23 @@ auto with_progress(nb::object callable, F&& job) {
   return take(std::move(result));
 }
 
-/// Raises a UsageError, with the nearest, for a key of `options` that is not among these.
-void check_keys(const nb::dict& options, std::initializer_list<const char*> known);
+/// Keyword arguments: read by their names, and none is left over.
+class Keywords {
+ public:
+  explicit Keywords(const nb::dict& given) : given_(given) {}
+  /// Leaves `value` as it is where the name is not given, or is None.
+  template <class T>
+  void read(const char* name, T* value) {
+    known_.emplace_back(name);
+    if (given_.contains(name) && !given_[name].is_none()) *value = nb::cast<T>(given_[name]);
+  }
+  /// After all were read. Raises a UsageError, with the nearest, for a name that nobody read.
+  void refuse_others() const;
 
-using Doubles = nb::ndarray<const double, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
+ private:
+  const nb::dict& given_;
+  std::vector<std::string> known_;
+};
 
 /// While it lives this thread is in a callback or hook: what waits for the simulation is refused.
 class CallbackScope {
@@ -115,7 +139,7 @@ class CallbackScope {
 /// (the collector of cycles may run in a callback), soon on the main thread; streams first.
 enum class Kept { kStream, kRun };
 void destroy_when_safe(Kept kind, std::function<void()> destroy);
-/// What still waits to be destroyed.
+/// Destroys now what still waits for it.
 void destroy_deferred();
 
 /// Numbers of any sequence or array of Python's, as doubles. Raises: no numbers.

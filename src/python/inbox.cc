@@ -30,8 +30,7 @@ void Inbox::put(Waiting message) {
   try {
     callback(message.make());
   } catch (nb::python_error& error) {
-    const std::lock_guard lock(mutex_);
-    if (!error_) error_ = std::make_unique<nb::python_error>(std::move(error));
+    error_.keep(std::move(error));
   }
 }
 
@@ -46,15 +45,6 @@ std::optional<Waiting> Inbox::pop() {
 void Inbox::clear() {
   const std::lock_guard lock(mutex_);
   waiting_.clear();
-}
-
-void Inbox::rethrow() {
-  std::unique_ptr<nb::python_error> error;
-  {
-    const std::lock_guard lock(mutex_);
-    error.swap(error_);
-  }
-  if (error != nullptr) throw std::move(*error);
 }
 
 }  // namespace gloam::python

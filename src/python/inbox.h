@@ -42,7 +42,8 @@ class Inbox {
   int64_t lost() const { return lost_; }
   /// For the collector of cycles.
   nb::object& callback() { return callback_; }
-  void rethrow();
+  /// Raises what the callback has raised, once.
+  void rethrow() { error_.rethrow(); }
 
   int64_t next_from() const { return next_from_; }
   void set_next_from(int64_t step) { next_from_ = step; }
@@ -54,7 +55,7 @@ class Inbox {
   std::unique_ptr<Stream> stream_;
   std::mutex mutex_;
   std::deque<Waiting> waiting_;
-  std::unique_ptr<nb::python_error> error_;  // of the callback
+  FirstError error_;  // of the callback
   std::atomic<int64_t> lost_{0};
   int64_t next_from_ = 0;
 };

@@ -16,23 +16,20 @@ namespace {
 
 std::unique_ptr<LogStream> start(Run& run, const std::filesystem::path& file,
                                  const nb::dict& options) {
-  check_keys(options, {"overwrite", "required", "durable", "embed", "topics", "width", "height",
-                       "state_rate"});
+  Keywords keywords(options);
   LogRequest request;
   request.file = file;
-  const auto flag = [&](const char* key, bool* value) {
-    if (options.contains(key)) *value = nb::cast<bool>(options[key]);
-  };
-  flag("overwrite", &request.overwrite);
-  flag("required", &request.required);
-  flag("durable", &request.durable);
-  flag("embed", &request.embed);
-  if (options.contains("topics"))
-    request.topics = nb::cast<std::vector<std::string>>(options["topics"]);
-  if (options.contains("width")) request.width = nb::cast<int>(options["width"]);
-  if (options.contains("height")) request.height = nb::cast<int>(options["height"]);
-  if (options.contains("state_rate"))
-    request.state_rate = rational(nb::cast<double>(options["state_rate"]));
+  keywords.read("overwrite", &request.overwrite);
+  keywords.read("required", &request.required);
+  keywords.read("durable", &request.durable);
+  keywords.read("embed", &request.embed);
+  keywords.read("topics", &request.topics);
+  keywords.read("width", &request.width);
+  keywords.read("height", &request.height);
+  double state_rate = request.state_rate.value();
+  keywords.read("state_rate", &state_rate);
+  keywords.refuse_others();
+  request.state_rate = rational(state_rate);
   return take(without_gil([&] { return start_log(run.simulation(), request); }));
 }
 
@@ -88,21 +85,21 @@ ReplayMotion motion_of(const std::string& name) {
 LogReplay replay_of(const std::filesystem::path& file, const nb::dict& options) {
   LogReplay replay;
   replay.log = file;
-  const auto read = [&]<class T>(const char* key, T* value) {
-    if (options.contains(key) && !options[key].is_none()) *value = nb::cast<T>(options[key]);
-  };
-  std::string folder;
-  read("folder", &folder);
+  Keywords keywords(options);
+  std::string folder, motion = "stepped";
+  keywords.read("folder", &folder);
+  keywords.read("run", &replay.run);
+  keywords.read("overlays", &replay.overlays);
+  keywords.read("draw_seed", &replay.draw_seed);
+  keywords.read("settings", &replay.settings);
+  keywords.read("outputs", &replay.outputs);
+  keywords.read("motion", &motion);
+  nb::dict request;
+  keywords.read("request", &request);
+  keywords.refuse_others();
   replay.folder = folder;
-  read("run", &replay.run);
-  read("overlays", &replay.overlays);
-  read("draw_seed", &replay.draw_seed);
-  read("settings", &replay.settings);
-  read("outputs", &replay.outputs);
-  std::string motion = "stepped";
-  read("motion", &motion);
   replay.motion = motion_of(motion);
-  if (options.contains("request")) replay.request = run_request(options["request"]);
+  replay.request = run_request(request);
   return replay;
 }
 
@@ -154,7 +151,6 @@ nb::tuple trajectory(const std::filesystem::path& log, const std::string& topic)
 void bind_logs(nb::module_& m) {
   nb::class_<LogStream>(m, "LogStream")
       .def_prop_ro("dropped", &LogStream::dropped)
-      .def("check", [](LogStream& log) { check(log.status()); })
       .def("finish", [](LogStream& log) { check(without_gil([&] { return log.finish(); })); });
   m.def("start_log", &start, nb::arg("run"), nb::arg("file"), nb::arg("options"),
         nb::keep_alive<0, 1>());

@@ -68,12 +68,6 @@ const std::map<std::string, Maker>& data_fields() {
   return fields;
 }
 
-std::vector<std::string> names_of(const std::map<std::string, Maker>& fields) {
-  std::vector<std::string> names;
-  for (const auto& [name, maker] : fields) names.push_back(name);
-  return names;
-}
-
 /// Keeps the arrays of a model for whoever looks at them.
 struct ModelKeeper {
   std::shared_ptr<mjModel_> model;
@@ -129,21 +123,11 @@ void bind_memory(nb::module_& m) {
   nb::class_<PhysicsMemory>(m, "Memory", "MuJoCo's memory of a simulation.")
       .def("array", &array_of, nb::arg("name"),
            "A field of mjData, or of mjModel (read only), as a live array without a copy.")
-      .def_prop_ro(
-          "model_address",
-          [](const PhysicsMemory& p) { return reinterpret_cast<uintptr_t>(p.model.get()); })
       .def_prop_ro("data_address",
                    [](const PhysicsMemory& p) { return reinterpret_cast<uintptr_t>(p.data.get()); })
-      .def_prop_ro("time", [](const PhysicsMemory& p) { return double{p.data->time}; })
-      .def_prop_ro("ncon", [](const PhysicsMemory& p) { return int{p.data->ncon}; })
-      .def("is_same", [](const PhysicsMemory& a, const PhysicsMemory& b) {
-        return a.data == b.data && a.model == b.model;
-      });
+      .def_prop_ro("time", [](const PhysicsMemory& p) { return double{p.data->time}; });
   nb::class_<ModelKeeper>(m, "ModelKeeper").def("borrow", &borrow_model);
-  m.def("memory_fields",
-        [] { return nb::make_tuple(names_of(data_fields()), names_of(model_fields())); });
   m.def("mujoco_version", [] { return std::string(mj_versionString()); });
-  m.def("struct_sizes", [] { return nb::make_tuple(sizeof(mjModel), sizeof(mjData)); });
 }
 
 }  // namespace gloam::python

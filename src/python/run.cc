@@ -88,8 +88,8 @@ void Run::restart_inboxes() {
   for (const auto& inbox : open_inboxes()) inbox->set_next_from(step);
 }
 
-// What Python wrote between two steps is put back and given to the next step by the hook, where
-// logs see it as what it is: an input.
+// Numbers that Python wrote between two steps are put back, and the hook gives them to the next
+// step: logs keep what hooks write as inputs.
 void Run::give_written() {
   if (!is_watched_ || seen_.empty()) return;
   read_state(memory_, &now_);
@@ -122,13 +122,19 @@ void Run::look_at_state() {
   read_state(memory_, &seen_);
 }
 
+// After what may have exchanged the memory.
+void Run::look_anew() {
+  if (is_watched_) look_at_memory();
+  look_at_state();
+}
+
 void Run::call_hook(const mjModel_* model, mjData_* data) {
   if (has_written_.load(std::memory_order_acquire)) {
-    std::vector<double> state(static_cast<size_t>(mj_stateSize(model, kState)));
-    mj_getState(model, data, state.data(), kState);
+    in_hook_.resize(static_cast<size_t>(mj_stateSize(model, kState)));
+    mj_getState(model, data, in_hook_.data(), kState);
     for (size_t i = 0; i < written_.index.size(); ++i)
-      if (written_.index[i] < state.size()) state[written_.index[i]] = written_.value[i];
-    mj_setState(model, data, state.data(), kState);
+      if (written_.index[i] < in_hook_.size()) in_hook_[written_.index[i]] = written_.value[i];
+    mj_setState(model, data, in_hook_.data(), kState);
     has_written_.store(false, std::memory_order_release);
   }
   if (!has_hook_.load(std::memory_order_acquire)) return;
@@ -139,8 +145,7 @@ void Run::call_hook(const mjModel_* model, mjData_* data) {
   try {
     hook();
   } catch (nb::python_error& error) {
-    const std::lock_guard lock(hook_mutex_);
-    if (!hook_error_) hook_error_ = std::make_unique<nb::python_error>(std::move(error));
+    hook_error_.keep(std::move(error));
     simulation_->pause();
     simulation_->request_stop();
   }
@@ -158,14 +163,8 @@ void Run::guarded_call(F&& job) {
   } catch (...) {
     thrown = std::current_exception();  // Ctrl-C
   }
-  if (is_watched_ && (thrown || !status.ok())) look_at_memory();
-  look_at_state();
-  std::unique_ptr<nb::python_error> error;
-  {
-    const std::lock_guard lock(hook_mutex_);
-    error.swap(hook_error_);
-  }
-  if (error != nullptr) throw std::move(*error);
+  thrown || !status.ok() ? look_anew() : look_at_state();
+  hook_error_.rethrow();
   for (const auto& inbox : open_inboxes()) inbox->rethrow();
   if (thrown) std::rethrow_exception(thrown);
   check(status);
@@ -205,8 +204,7 @@ void Run::pause() {
   without_gil([&] { simulation_->pause(); });
   const std::unique_lock lock(turn_, std::try_to_lock);
   if (!lock.owns_lock()) return;  // somebody steps it, and will look himself
-  if (is_watched_) look_at_memory();
-  look_at_state();
+  look_anew();
 }
 
 void Run::reset() {
@@ -216,8 +214,7 @@ void Run::reset() {
   empty_inboxes();
   const Status status = without_gil([&] { return simulation_->post({.what = ResetSim{}}); });
   check(status);
-  if (is_watched_) look_at_memory();
-  look_at_state();
+  look_anew();
   restart_inboxes();
 }
 
@@ -235,8 +232,7 @@ void Run::recompile(const World& world) {
     status = without_gil([&] { return simulation_->post({.what = ResetSim{}}); });
     restart_inboxes();
   }
-  if (is_watched_) look_at_memory();
-  look_at_state();
+  look_anew();
   check(status);
 }
 
@@ -246,8 +242,7 @@ void Run::restore(const Checkpoint& checkpoint) {
   without_gil([&] { simulation_->pause(); });
   empty_inboxes();
   const Status status = interruptible([&] { return simulation_->restore(checkpoint); }, [] {});
-  if (is_watched_) look_at_memory();
-  look_at_state();
+  look_anew();
   restart_inboxes();
   check(status);
 }

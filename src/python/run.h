@@ -60,6 +60,7 @@ class Run {
   void give_written();
   void look_at_memory();
   void look_at_state();
+  void look_anew();
   void call_hook(const mjModel_* model, mjData_* data);
   std::vector<std::shared_ptr<Inbox>> open_inboxes() const;
   void empty_inboxes();
@@ -75,13 +76,12 @@ class Run {
   int64_t generation_ = 0;
   bool is_watched_ = false;   // Python holds arrays of the memory
   std::vector<double> seen_;  // state when Python last got it; empty = it runs, or was never asked
-  std::vector<double> now_;
+  std::vector<double> now_, in_hook_;
   Written written_;
   std::atomic<bool> has_written_{false}, has_commands_{false};
   nb::object hook_;
   std::atomic<bool> has_hook_{false};
-  std::mutex hook_mutex_;
-  std::unique_ptr<nb::python_error> hook_error_;
+  FirstError hook_error_;
   std::vector<std::weak_ptr<Inbox>> inboxes_;
 };
 

@@ -42,25 +42,22 @@ class Painter {
 }  // namespace
 
 RunRequest run_request(const nb::dict& options) {
-  check_keys(options, {"out", "overwrite", "cameras", "width", "height", "duration", "seed",
-                       "timestep", "rate", "mcap", "topics"});
+  Keywords keywords(options);
   RunRequest request;
-  const auto read = [&]<class T>(const char* key, T* value) {
-    if (options.contains(key) && !options[key].is_none()) *value = nb::cast<T>(options[key]);
-  };
-  read("out", &request.out);
-  read("overwrite", &request.overwrite);
-  read("cameras", &request.cameras);
-  read("width", &request.width);
-  read("height", &request.height);
-  read("duration", &request.duration);
-  read("seed", &request.simulation.seed);
-  read("timestep", &request.simulation.timestep);
+  keywords.read("out", &request.out);
+  keywords.read("overwrite", &request.overwrite);
+  keywords.read("cameras", &request.cameras);
+  keywords.read("width", &request.width);
+  keywords.read("height", &request.height);
+  keywords.read("duration", &request.duration);
+  keywords.read("seed", &request.simulation.seed);
+  keywords.read("timestep", &request.simulation.timestep);
   double rate = 0;
-  read("rate", &rate);
+  keywords.read("rate", &rate);
+  keywords.read("mcap", &request.log.file);
+  keywords.read("topics", &request.log.topics);
+  keywords.refuse_others();
   request.rate = rational(rate);
-  read("mcap", &request.log.file);
-  read("topics", &request.log.topics);
   return request;
 }
 

@@ -44,28 +44,9 @@ void post(Run& run, decltype(Command::what) what, int64_t step, ControlLease* le
 }
 
 LiveFieldId live_field(const std::string& name) {
-  static const std::vector<std::string> names = {"gravity",
-                                                 "wind",
-                                                 "body_mass",
-                                                 "geom_friction",
-                                                 "height_field",
-                                                 "light_diffuse",
-                                                 "light_intensity",
-                                                 "light_active",
-                                                 "geom_color",
-                                                 "material_color",
-                                                 "material_emission",
-                                                 "material_specular",
-                                                 "material_shininess",
-                                                 "material_reflectance",
-                                                 "material_metallic",
-                                                 "material_roughness"};
-  static_assert(kLiveFieldCount == 16);
-  for (size_t i = 0; i < names.size(); ++i)
-    if (names[i] == name) return static_cast<LiveFieldId>(i);
-  std::string all;
-  for (const std::string& one : names) all += all.empty() ? one : ", " + one;
-  raise("NotFoundError", "there is no live field '" + name + "'", "one of: " + all);
+  const Result<LiveFieldId> field = find_live_field(name);
+  if (!field.ok()) raise("NotFoundError", field.error().message, field.error().hint);
+  return *field;
 }
 
 void bind_commands(nb::class_<Run>& c) {
@@ -213,7 +194,11 @@ void bind_view(nb::module_& m) {
         ViewOptions options;
         options.port = port;
         options.camera = camera;
-        if (!render.empty()) options.render = render_options(render);
+        if (!render.empty()) {
+          Keywords keywords(render);
+          options.render = render_options(keywords);
+          keywords.refuse_others();
+        }
         return take(without_gil([&] { return ViewServer::start(run.simulation(), options); }));
       },
       nb::arg("run"), nb::arg("port") = 0, nb::arg("camera") = "free",
@@ -272,15 +257,12 @@ void bind_simulation(nb::module_& m) {
                      const Rational rate = r.simulation().step_rate();
                      return nb::make_tuple(rate.num, rate.den);
                    })
-      .def("check_status",
-           [](Run& r) { check(without_gil([&] { return r.simulation().status(); })); })
       .def(
           "claim",
           [](Run& r, Robot robot) {
             return take(without_gil([&] { return r.simulation().claim(robot); }));
           },
           nb::keep_alive<0, 1>())
-      .def("camera_names", [](Run& r) { return r.simulation().camera_names(); })
       .def("topics",
            [](Run& r) {
              return topic_list(take(without_gil([&] { return r.simulation().topics(); })));

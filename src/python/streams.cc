@@ -10,11 +10,6 @@
 namespace gloam::python {
 namespace {
 
-template <class T>
-void read_key(const nb::dict& options, const char* key, T* value) {
-  if (options.contains(key) && !options[key].is_none()) *value = nb::cast<T>(options[key]);
-}
-
 // Where several threads may add messages and one Python object looks: see Inbox.
 std::shared_ptr<Inbox> make_inbox(Run& run, nb::object callback) {
   constexpr int kWaiting = 64;  // messages
@@ -97,16 +92,16 @@ CameraStream& camera_stream(Inbox& inbox) {
 
 }  // namespace
 
-RenderOptions render_options(const nb::dict& options) {
+RenderOptions render_options(Keywords& keywords) {
   RenderOptions render;
-  read_key(options, "tier", &render.tier);
-  read_key(options, "spp", &render.spp);
-  read_key(options, "error", &render.error);
-  read_key(options, "max_depth", &render.max_depth);
-  read_key(options, "device", &render.device);
-  read_key(options, "denoise", &render.denoise);
-  read_key(options, "look", &render.look);
-  read_key(options, "ev100", &render.ev100);
+  keywords.read("tier", &render.tier);
+  keywords.read("spp", &render.spp);
+  keywords.read("error", &render.error);
+  keywords.read("max_depth", &render.max_depth);
+  keywords.read("device", &render.device);
+  keywords.read("denoise", &render.denoise);
+  keywords.read("look", &render.look);
+  keywords.read("ev100", &render.ev100);
   return render;
 }
 
@@ -120,20 +115,22 @@ Rational rational(double rate) {
 }
 
 CameraRequest camera_request(const nb::dict& options) {
-  check_keys(options, {"camera", "outputs", "width", "height", "required", "rate", "pose", "tier",
-                       "spp", "error", "max_depth", "device", "denoise", "look", "ev100"});
+  Keywords keywords(options);
   CameraRequest request;
-  request.render = render_options(options);
-  read_key(options, "camera", &request.camera);
-  read_key(options, "outputs", &request.outputs);
-  read_key(options, "width", &request.width);
-  read_key(options, "height", &request.height);
-  read_key(options, "required", &request.required);
+  request.render = render_options(keywords);
+  keywords.read("camera", &request.camera);
+  keywords.read("outputs", &request.outputs);
+  keywords.read("width", &request.width);
+  keywords.read("height", &request.height);
+  keywords.read("required", &request.required);
   double rate = 0;
-  read_key(options, "rate", &rate);
+  keywords.read("rate", &rate);
+  nb::object X_WC = nb::none();
+  keywords.read("pose", &X_WC);
+  keywords.refuse_others();
   if (!(rate >= 0 && rate < 1e6)) raise("UsageError", "a rate is not in 0 … 1e6 Hz");
   request.rate = rational(rate);
-  if (options.contains("pose") && !options["pose"].is_none()) request.X_WC = pose(options["pose"]);
+  if (!X_WC.is_none()) request.X_WC = pose(X_WC);
   return request;
 }
 

@@ -6,7 +6,7 @@
 
 namespace gloam::python {
 
-RenderOptions render_options(const nb::dict& options);
+RenderOptions render_options(Keywords& keywords);
 /// Keys: those of CameraRequest and RenderOptions; "pose" of the free camera.
 CameraRequest camera_request(const nb::dict& options);
 /// A rate in millionths of a hertz, exact where it has few decimals.

@@ -2,8 +2,6 @@
 
 #include "gloam/world.h"
 
-#include <mujoco/mujoco.h>
-
 #include "core.h"
 #include "gloam/options.h"
 #include "gloam/topics.h"
@@ -162,9 +160,6 @@ void bind_world(nb::module_& m) {
            [](const World& w, const std::string& n) { return take(w.find_actuator(n)); })
       .def("find_sensor",
            [](const World& w, const std::string& n) { return take(w.find_sensor(n)); })
-      .def("find_geom", [](const World& w, const std::string& n) { return take(w.find_geom(n)); })
-      .def("find_tendon",
-           [](const World& w, const std::string& n) { return take(w.find_tendon(n)); })
       .def("find_robot", [](const World& w, const std::string& n) { return take(w.find_robot(n)); })
       .def("info", &info_dict)
       .def("robots", &robot_list)
