@@ -18,8 +18,9 @@ struct PhysicsMemory {
 };
 
 /// Makes the mjData that a simulation steps in, of the model that it is given: the simulation's own
-/// copy, whose meshes, textures and trees of bounds are still the World's. Called at creation and whenever the World is
-/// exchanged, on the thread that asks for that. Null: refused, which is an Error.
+/// copy, whose meshes, textures and trees of bounds are still the World's. Called at creation and
+/// whenever the World is exchanged, on the thread that asks for that. Null: refused, which is an
+/// Error.
 using DataMaker = std::function<std::shared_ptr<mjData_>(const std::shared_ptr<mjModel_>& model)>;
 
 }  // namespace gloam
