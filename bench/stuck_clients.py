@@ -1,6 +1,6 @@
 """What 64 clients that never read cost the thread that steps, and how much memory they take.
 
-    python3 bench/stuck_clients.py [--seconds N] [--pairs N] [--speed N] [--half-open]
+    python3 bench/stuck_clients.py [SCENE] [--seconds N] [--pairs N] [--speed N] [--half-open]
 
 One live run with ZeroMQ and Foxglove, in real time times N; phases without clients and with them in turn: 16 connections to each
 server that stop in the middle of the handshake, 16 subscribers of each that read nothing of states, joints and transforms. CPU time
@@ -46,7 +46,7 @@ def memory(pid):
 class Stuck:
     """64 clients; closed by leaving."""
 
-    def __init__(self, zmq_port, foxglove_port, subscribes):
+    def __init__(self, zmq_port, foxglove_port, joints, subscribes):
         self.context, self.open = zmq.Context(), []
         for port, words in ((zmq_port, b"\xff\x00\x00"), (foxglove_port, b"GET / HTTP/1.1\r\nHost: 127.0")):
             for _ in range(EACH):
@@ -58,13 +58,13 @@ class Stuck:
             subscriber.setsockopt(zmq.LINGER, 0)
             subscriber.setsockopt(zmq.RCVHWM, 10)
             subscriber.setsockopt(zmq.RCVBUF, 4096)
-            for topic in (b"state", b"/tf", b"/ada/joint_states"):
+            for topic in (b"state", b"/tf", joints.encode()):
                 subscriber.setsockopt(zmq.SUBSCRIBE, topic)
             subscriber.connect(f"tcp://127.0.0.1:{zmq_port + 1}")
             self.open.append(subscriber)
         for _ in range(EACH if subscribes else 0):
             watcher = FoxgloveClient(f"ws://127.0.0.1:{foxglove_port}/?token={TOKEN}")
-            for topic in ("/tf", "/ada/joint_states"):
+            for topic in ("/tf", joints):
                 watcher.subscribe(topic)
             self.open.append(watcher)
 
@@ -93,18 +93,20 @@ def phase(sim, pid, thread, seconds):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("scene", nargs="?", default=ROOT / "examples" / "two_robots.toml", type=Path)
     parser.add_argument("--seconds", type=float, default=5)
     parser.add_argument("--pairs", type=int, default=4)
     parser.add_argument("--speed", type=float, default=1)
     parser.add_argument("--half-open", action="store_true", help="only the 32 connections that stop in the handshake")
     arguments = parser.parse_args()
     zmq_port, foxglove_port = free_port(), free_port()
-    command = [PROGRAM, "run", ROOT / "examples" / "two_robots.toml", "--zmq", "--foxglove", "--speed", arguments.speed,
+    command = [PROGRAM, "run", arguments.scene, "--zmq", "--foxglove", "--speed", arguments.speed,
                "--set", f"bridge.zmq.port={zmq_port}", "--set", f"bridge.foxglove.port={foxglove_port}"]
     process = subprocess.Popen([str(word) for word in command], env={**os.environ, "GLOAM_TOKEN": TOKEN}, stderr=subprocess.PIPE, text=True)
     try:
         next(line for line in process.stderr if "running" in line)
         with Client(f"tcp://127.0.0.1:{zmq_port}", token=TOKEN) as sim:
+            joints = next(t["name"] for t in sim.topics() if t["type"] == "sensor_msgs/msg/JointState" and not t["input"])
             before = threads(process.pid)
             time.sleep(2)
             after = threads(process.pid)
@@ -112,7 +114,7 @@ def main():
             start, ratios, largest = memory(process.pid), [], 0
             for _ in range(arguments.pairs):
                 alone = phase(sim, process.pid, thread, arguments.seconds)
-                with Stuck(zmq_port, foxglove_port, not arguments.half_open):
+                with Stuck(zmq_port, foxglove_port, joints, not arguments.half_open):
                     time.sleep(1)
                     beside = phase(sim, process.pid, thread, arguments.seconds)
                     largest = max(largest, memory(process.pid))

@@ -12,9 +12,9 @@ namespace gloam::latency {
 
 /// A topic of the measured scene.
 struct Subject {
-  const char* name;
-  const char* topic;
-  double rate;  ///< [Hz]
+  std::string name;
+  std::string topic;
+  int rate;  ///< [Hz]
 };
 
 /// Report of a client's process on a message.

@@ -1,12 +1,12 @@
-// Latency of bridges, published: bench_latency [--seconds N] [--only CLIENT[,CLIENT]]
+// Latency of bridges, published; kHelp tells the arguments.
 //
-// One simulation in real time, 1 kHz, with a camera for each size of picture; a client in another
-// process for each bridge, one after the other. A step hook notes when each physics step began,
-// which is when its instant came to be but for some ten microseconds. One line of JSON for each
-// client and topic: p50 and p99 [ms], jitter (standard deviation [ms]), messages, and instants of
-// which none came. "inside" is the same topic opened in the simulation's own process. Of the others
-// "bridge_p50_ms", "bridge_p99_ms" leave out what passed until the message left the simulation:
-// physics, rendering, encoding.
+// One simulation in real time: a plain arm at 1 kHz with a camera for each size of picture, or a
+// scene; a client in another process for each bridge, one after the other. A step hook notes when
+// each physics step began, which is when its instant came to be but for some ten microseconds. One
+// line of JSON for each client and topic: p50 and p99 [ms], jitter (standard deviation [ms]),
+// messages, and instants of which none came. "inside" is the same topic opened in the simulation's
+// own process. Of the others "bridge_p50_ms", "bridge_p99_ms" leave out what passed until the
+// message left the simulation: physics, rendering, encoding.
 
 #include <poll.h>
 #include <signal.h>
@@ -57,8 +57,20 @@ constexpr const char* kModel = R"(<mujoco model="arm">
   <actuator><motor name="a" joint="a"/></actuator>
 </mujoco>)";
 
-constexpr double kStep = 0.001;  // [s]
-constexpr Subject kSubjects[] = {
+constexpr const char* kHelp = R"(bench_latency [SCENE] [--seconds N] [--only CLIENT[,CLIENT]]
+
+How long a message takes from the moment at which its instant exists to a reader, as one line of JSON
+for each client and topic, in milliseconds.
+
+  SCENE         joint states at 100 Hz and pictures of the first camera at 5 Hz of this scene;
+                without it a plain arm at 1 kHz, pictures of 64x64 to 1280x720
+  --seconds N   of each measurement; default 5
+  --only LIST   of inside, ros2, zmq, zmq shm, rclpy, foxglove; default all
+
+Examples: bench_latency --only inside,zmq
+          bench_latency examples/house.toml --seconds 3 --only "ros2,zmq shm"
+)";
+const std::vector<Subject> kArm = {
     {"state 1 kHz", "/arm/joint_states", 1000},
     {"raw 64x64", "/c64/image_raw", 10},
     {"raw 320x240", "/c320/image_raw", 10},
@@ -84,11 +96,12 @@ constexpr Client kClients[] = {
 struct StepTimes {
   std::vector<std::atomic<double>> began;
   std::vector<std::atomic<double>> left;  ///< when their message left the simulation
-  explicit StepTimes(size_t steps) : began(steps), left(steps) {}
+  const double step;                      ///< [s]
+  StepTimes(size_t steps, double seconds) : began(steps), left(steps), step(seconds) {}
   size_t index(uint64_t instant) const {
-    const auto step =
-        static_cast<size_t>(std::llround(1e-9 * static_cast<double>(instant) / kStep));
-    return step >= 1 && step <= began.size() ? step - 1 : 0;
+    const auto steps =
+        static_cast<size_t>(std::llround(1e-9 * static_cast<double>(instant) / step));
+    return steps >= 1 && steps <= began.size() ? steps - 1 : 0;
   }
 };
 
@@ -166,8 +179,8 @@ class Run {
     const std::string out = std::to_string(ends[1]);
     const pid_t process = fork();
     if (process == 0) {
-      execl("/proc/self/exe", "latency", "--client", client.name, address.c_str(), subject.topic,
-            out.c_str(), nullptr);
+      execl("/proc/self/exe", "latency", "--client", client.name, address.c_str(),
+            subject.topic.c_str(), out.c_str(), nullptr);
       _exit(127);
     }
     close(ends[1]);
@@ -196,25 +209,55 @@ class Run {
   const int seconds_;
 };
 
-Result<World> measured_world() {
+/// A world and what is read of it.
+struct Measured {
+  World world;
+  std::vector<Subject> subjects;
+};
+
+Result<Measured> compiled(Scene scene, std::vector<Subject> subjects) {
+  scene.render.tier = "direct";
+  scene.render.spp = 1;
+  scene.render.denoise = false;
+  for (const Subject& subject : subjects) {
+    TopicOptions topic;
+    topic.name = subject.topic;
+    topic.rate = Rational{subject.rate, 1};
+    scene.topics.push_back(topic);
+  }
+  GLOAM_TRY(World world, World::compile(scene));
+  return Measured{std::move(world), std::move(subjects)};
+}
+
+Result<Measured> measured_arm() {
   const auto folder =
       std::filesystem::temp_directory_path() / ("gloam_latency_" + std::to_string(getpid()));
   std::filesystem::create_directory(folder);
   const auto file = folder / "arm.xml";
   std::ofstream(file) << kModel;
-  GLOAM_TRY(Scene scene, load_scene(file));
-  scene.render.tier = "direct";
-  scene.render.spp = 1;
-  scene.render.denoise = false;
-  for (const Subject& subject : kSubjects) {
-    TopicOptions topic;
-    topic.name = subject.topic;
-    topic.rate = Rational{static_cast<int64_t>(subject.rate), 1};
-    scene.topics.push_back(topic);
-  }
-  auto world = World::compile(scene);
+  auto scene = load_scene(file);
+  if (!scene.ok()) return scene.error();
+  auto measured = compiled(std::move(*scene), kArm);
   std::filesystem::remove_all(folder);
-  return world;
+  return measured;
+}
+
+Result<Measured> measured_scene(const std::string& file) {
+  GLOAM_TRY(Scene scene, load_scene(file));
+  GLOAM_TRY(const World world, World::compile(scene));
+  GLOAM_TRY(const auto topics, list_topics(world));
+  std::vector<Subject> subjects;
+  const auto add = [&](const std::string& name, const std::string& type, int rate) {
+    const auto found = std::ranges::find_if(
+        topics, [&](const TopicInfo& t) { return t.type == type && !t.is_input; });
+    if (found != topics.end()) subjects.push_back({name + " " + found->name, found->name, rate});
+  };
+  add("state", "sensor_msgs/msg/JointState", 100);
+  add("raw", "sensor_msgs/msg/Image", 5);
+  add("JPEG", "sensor_msgs/msg/CompressedImage", 5);
+  if (subjects.empty())
+    return Error{ErrorKind::kInput, file + ": the scene has neither joints nor cameras to read"};
+  return compiled(std::move(scene), std::move(subjects));
 }
 
 bool is_chosen(const std::string& only, const std::string& name) {
@@ -226,9 +269,11 @@ void print(const ordered_json& line) {
   std::fflush(stdout);
 }
 
-Status measure(int seconds, const std::string& only) {
-  GLOAM_TRY(const World world, measured_world());
-  StepTimes times(3'600'000);  // outlives the simulation, whose hook writes it
+Status measure(const std::string& file, int seconds, const std::string& only) {
+  GLOAM_TRY(const Measured measured, file.empty() ? measured_arm() : measured_scene(file));
+  const auto& [world, subjects] = measured;
+  // An hour; it outlives the simulation, whose hook writes it.
+  StepTimes times(3'600'000, world.info().timestep);
   size_t step = 0;
   GLOAM_TRY(const auto simulation, Simulation::create(world, {.pace = Pace::kRealTime}));
   GLOAM_TRY_STATUS(simulation->set_step_hook([&](const mjModel_*, mjData_*) {
@@ -240,14 +285,14 @@ Status measure(int seconds, const std::string& only) {
     times.left[times.index(static_cast<uint64_t>(std::llround(message.time * 1e9)))] = now_ms();
   });
   if (is_chosen(only, "inside"))
-    for (const Subject& subject : kSubjects) print(run.inside(subject));
+    for (const Subject& subject : subjects) print(run.inside(subject));
   signal(SIGPIPE, SIG_IGN);
   for (const Client& client : kClients) {
     if (!is_chosen(only, client.name)) continue;
     BridgeOptions options;
     client.choose(&options);
     GLOAM_TRY(const auto bridges, Bridges::start(timed, options));
-    for (const Subject& subject : kSubjects)
+    for (const Subject& subject : subjects)
       print(run.outside(client, bridges->list().front()->address(), subject));
   }
   return {};
@@ -277,9 +322,14 @@ int main(int argc, char** argv) {
     return 2;
   }
   gloam::CommandLine line(argc, argv);
+  if (line.flag("--help")) {
+    std::fputs(gloam::latency::kHelp, stdout);
+    return 0;
+  }
   int seconds = 5;
   std::string only;
   line.value("--seconds", &seconds);
   line.value("--only", &only);
-  return gloam::exit_code(gloam::latency::measure(seconds, only));
+  const std::string file = line.words().empty() ? "" : line.words().front();
+  return gloam::exit_code(gloam::latency::measure(file, seconds, only));
 }
