@@ -1,6 +1,6 @@
 """What 64 clients that never read cost the thread that steps, and how much memory they take.
 
-    python3 bench/stuck_clients.py [SCENE] [--seconds N] [--pairs N] [--speed N] [--half-open]
+    python3 tests/fetch_data.py; python3 bench/stuck_clients.py [SCENE] [--seconds N] [--pairs N] [--speed N] [--half-open]
 
 One live run with ZeroMQ and Foxglove, in real time times N; phases without clients and with them in turn: 16 connections to each
 server that stop in the middle of the handshake, 16 subscribers of each that read nothing of states, joints and transforms. CPU time
