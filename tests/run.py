@@ -2,8 +2,8 @@
 """Runs Gloam's tests: `./gloam test [fast|full] [--only NAME]`.
 
 fast  what takes about six minutes once built
-      (no tier) what CI runs: format, lint of changed files, all tests; ASan+UBSan over the unit tests of what reads files, TSan over
-      base and sim, where threads meet, if one of them did; all else under sanitizers is in full, which also makes and tries the bundle
+      (no tier) what CI runs: format, lint of changed files, all tests; if it changed, ASan+UBSan over the unit tests of what reads files,
+      TSan over base and sim, where threads meet; all else under sanitizers is in full, which also makes and tries the bundle
 full  the same plus lint of every file, every sanitizer over everything, 10 000 damaged files for every reader, five minutes of
       fuzzing per target and sweeps over 200 seeds: an hour or more, but resumable: parts that passed are kept in build/full_state.json until the source changes
 """
@@ -142,12 +142,12 @@ def mutations(tally, module):
             del os.environ["GLOAM_MUTATIONS"]
 
 
-def python_tests(tally, file, only=None):
+def python_tests(tally, file, only=None, **variables):
     """One file of Python tests, in a process of its own."""
     start = time.time()
     module = str(Path(file).relative_to("tests").with_suffix("")).replace("/", ".")
     result = subprocess.run([sys.executable, "-m", "unittest", "-v", *(["-k", only] if only else []), module], cwd=ROOT / "tests",
-                            text=True, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, env=environment())
+                            text=True, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, env=environment() | variables)
     count = re.search(r"^Ran (\d+) test", result.stdout, re.M)
     counted = {what: int(n) for what, n in re.findall(r"(failures|errors|skipped)=(\d+)", result.stdout.splitlines()[-1])}
     failed = counted.get("failures", 0) + counted.get("errors", 0)
@@ -368,8 +368,9 @@ def ci(tally):
     slow_units(tally, labels.only(labels.SLOW, but=labels.FULL))
     e2e_tests(tally)
     check_lint_of_changes(tally)
-    modules = [module for module in UNIT if module in READERS]
-    if build(tally, "asan", [f"gloam_{module}_test" for module in modules]):
+    touched = {name.split("/")[1] for name in changed("src/*")}
+    modules = [module for module in UNIT if module in READERS & touched]
+    if modules and build(tally, "asan", [f"gloam_{module}_test" for module in modules]):
         units(tally, "asan", TOO_SLOW_SANITIZED, modules)
     if any(name.startswith(("src/base/", "src/sim/")) for name in changed("src/*")) and build(tally, "tsan", ["gloam_base_test", "gloam_sim_test"]):
         gtest(tally, "tsan", "base", shard_filter=TOO_SLOW_SANITIZED)
@@ -407,6 +408,7 @@ def full(tally):
         "sweeps of running scenes": lambda t: gtest(t, "release", "runtime", labels.only(labels.SWEEPS)),
         "pack": pack,
         "first look at models": lambda t: python_tests(t, "tests/e2e/gallery_models.py"),
+        "slow commands of documents": lambda t: python_tests(t, "tests/e2e/docs_test.py", "weather", GLOAM_TEST_FULL="1"),
         "slow tests of Python": slow_api_tests,
         "memory of Python under asan": sanitized_api_tests,
         "recipes": lambda t: python_tests(t, "tests/e2e/recipes.py"),

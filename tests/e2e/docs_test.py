@@ -15,6 +15,8 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[2]
 # The tests and the benches themselves: this test is part of the first, the others take an hour.
 NOT_HERE = re.compile(r"^(\./gloam (test|bench|mitsuba|gallery|pack|wheel)\b|\./gloam demo$|git clone|cd )")
+# Minutes of two cores, of code that other commands run too: only with GLOAM_TEST_FULL=1, as `./gloam test full` sets it.
+IN_FULL = re.compile(r"^\./gloam demo adversity --quick")
 NEEDS_A_CARD = re.compile(r"^GLOAM_PRESET=cuda ")  # and minutes of nvcc; gloam_cuda_test shows that it compiles
 MINUTES = 60
 WIDEST = 140  # [columns]; prose is wrapped at 120
@@ -92,6 +94,8 @@ class Documentation(unittest.TestCase):
             own = {**os.environ, "GLOAM_CACHE": str(Path(scratch) / "cache")}  # a page clears it
             for command in commands(path):
                 if NOT_HERE.match(command) or (NEEDS_A_CARD.match(command) and not shutil.which("nvidia-smi")):
+                    continue
+                if IN_FULL.match(command) and not os.environ.get("GLOAM_TEST_FULL"):
                     continue
                 serves = "--view" in command
                 process = subprocess.Popen(["bash", "-c", "exec " + command if serves else command], cwd=scratch, text=True, env=own,
