@@ -19,6 +19,7 @@
 #include "render/film/png.h"
 #include "render/film/tone_map.h"
 #include "render/film/yuv.h"
+#include "world/materials/visual_rules.h"
 
 namespace gloam {
 namespace {
@@ -60,6 +61,8 @@ TEST(ToneMap, AChartOfGreysComesOutAsItIs) {
     }
   }
 }
+
+TEST(ToneMap, TheDefaultExposurePutsWhiteAtTheShoulder) { EXPECT_EQ(kShoulder, kWhiteExposed); }
 
 TEST(ToneMap, ColoursBelowTheShoulderAreKept) {
   std::vector<uint8_t> rgb;
