@@ -17,46 +17,15 @@ float gradient_noise(int x, int y) {
   return outer - std::floor(outer);
 }
 
-// Response of a channel: straight up to the top of the scale, and full at kFull.
-constexpr float kFull = 1.5f;
-float held(float x) {
-  constexpr float kAbove = kFull - 1;
-  return x < 1 ? x : kFull - kAbove * std::exp((1 - x) / kAbove);
-}
-
-// Neutral curve: what Fresnel adds to base colours, where the curve begins to bend, and how far it
-// compresses the brightest channel.
-constexpr float kF90 = 0.04f, kStart = 0.8f - kF90, kRoom = 1 - kStart;
-constexpr float compressed(float peak) {
-  return peak < kStart ? peak : 1 - kRoom * kRoom / (peak + kRoom - kStart);
-}
-
 float to_positive(float x) { return x > 0 ? min(x, 1e6f) : 0.0f; }  // also for NaN
 
 }  // namespace
 
 float max_luminance(float ev100) { return 1.2f * std::exp2(ev100); }
 
-Vec3f tone_curve_neutral(Vec3f color) {
-  constexpr float kDesaturation = 0.15f;
-  const float lowest = min(color.x, min(color.y, color.z));
-  const float offset = lowest < 2 * kF90 ? lowest - lowest * lowest / (4 * kF90) : kF90;
-  color = color - Vec3f{offset, offset, offset};
-  const float peak = max_component(color);
-  if (peak < kStart) return color;
-  const float new_peak = compressed(peak);
-  const float keep = 1 / (kDesaturation * (peak - new_peak) + 1);
-  return lerp(Vec3f{new_peak, new_peak, new_peak}, color * (new_peak / peak), keep);
-}
-
-Vec3f tone_curve_of_sensor(Vec3f color) {
-  color = tone_curve_neutral({held(color.x), held(color.y), held(color.z)});
-  // Value from which the curve bends, so that it ends at white.
-  constexpr float kEnd = compressed(kFull - kF90);
-  const float peak = max_component(color);
-  if (peak <= kStart) return color;
-  const float way = (peak - kStart) / (kEnd - kStart);
-  return color * (1 + (1 - kEnd) * way * way / peak);
+float tone_curve(float x) {
+  constexpr float kAbove = 1 - kShoulder;
+  return x <= kShoulder ? x : 1 - kAbove * std::exp((kShoulder - x) / kAbove);
 }
 
 void tone_map(const std::vector<Vec3f>& radiance, int width, int height,
@@ -71,7 +40,8 @@ void tone_map(const std::vector<Vec3f>& radiance, int width, int height,
         const size_t i = static_cast<size_t>(y) * static_cast<size_t>(width) + x;
         const Vec3f light = radiance[i] * scale;
         Vec3f color{to_positive(light.x), to_positive(light.y), to_positive(light.z)};
-        if (settings.neutral) color = tone_curve_of_sensor(color);
+        if (settings.neutral)
+          color = {tone_curve(color.x), tone_curve(color.y), tone_curve(color.z)};
         const float threshold = settings.dither ? gradient_noise(x, y) : 0.5f;
         for (int c = 0; c < 3; ++c) {
           const float level = 255 * srgb_encode(clamp(color[c], 0, 1)) + threshold;

@@ -12,20 +12,18 @@ namespace gloam {
 /// Rousiers 2014, "Moving Frostbite to PBR", saturation-based speed with q = 0.65).
 float max_luminance(float ev100);
 
-/// Khronos PBR Neutral tone mapper 1.0 (https://github.com/KhronosGroup/ToneMapping): keeps base
-/// colours of a scene lit to white, compresses and desaturates highlights only. Linear Rec. 709,
-/// in >= 0, out 0..1.
-Vec3f tone_curve_neutral(Vec3f color);
+/// Level up to which tone_curve() changes nothing; the default exposure puts white there.
+inline constexpr float kShoulder = 0.85f;
 
-/// Tone curve after a sensor, whose channels fill up one by one, half the scale above its top: a
-/// flame's orange turns to yellow where it is overexposed, as cameras show it, and not to the pink
-/// that the curve alone makes of it. Light that fills all three channels is white, 1; light that
-/// fills two is up to a hundredth more.
-Vec3f tone_curve_of_sensor(Vec3f color);
+/// Tone curve of one channel, in >= 0, out 0 … 1: what is no brighter than kShoulder is shown as it
+/// is; above, the rest of the scale is approached exponentially, with the same slope at first, so
+/// that 1 becomes 0.945 and three times white 1. Channels fill up one by one, as pixels of a sensor
+/// do: a flame's orange turns to yellow where it is overexposed.
+float tone_curve(float x);
 
 struct ToneMapSettings {
   float ev100 = 0;
-  bool neutral = true;  ///< false: no tone curve, what is above the top of the scale is cut
+  bool neutral = true;  ///< false: no tone curve, what is above the top of the scale is clipped
   bool dither = true;   ///< spreads the rounding error so that smooth gradients show no bands
 };
 

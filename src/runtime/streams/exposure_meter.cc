@@ -131,9 +131,13 @@ Status ExposureMeter::meter(const Snapshot& snapshot) {
   return {};
 }
 
+int64_t ExposureMeter::instant_before(int64_t step) const {
+  return timing_.step_of(std::max<int64_t>(0, timing_.last_at_or_before(step - 1)));
+}
+
 double ExposureMeter::ev100_at(int64_t step) {
   std::unique_lock lock(mutex_);
-  const int64_t due = instant_of(step);
+  const int64_t due = instant_before(step);
   const auto known = [&] {
     return ended_ || values_.contains(due) || (!values_.empty() && values_.begin()->first > due);
   };
@@ -143,8 +147,9 @@ double ExposureMeter::ev100_at(int64_t step) {
     constexpr auto kPatience = std::chrono::milliseconds(50);
     changed_.wait_for(lock, kPatience, known);
   }
-  const auto found = values_.find(due);
-  return found != values_.end() ? found->second : newest_;
+  if (values_.empty()) return newest_;
+  const auto after = values_.upper_bound(due);
+  return (after == values_.begin() ? after : std::prev(after))->second;
 }
 
 Status ExposureMeters::open(Simulator& simulator, SharedRenderers& renderers) {

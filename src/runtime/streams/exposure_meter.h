@@ -26,8 +26,10 @@ class ExposureMeter {
                                                      const CameraOptions& camera, uint64_t seed,
                                                      bool required);
 
-  /// Exposure value of a picture taken at `step`, a step that the simulation has come to; waits for
-  /// its metering. Where that instant was lost, or the simulation has ended, the last one known.
+  /// Exposure value of a picture taken at `step`, a step that the simulation has come to, by the
+  /// last metering before it, as a camera meters one frame and exposes the next: waits for that.
+  /// The first picture is exposed by its own light. Where that instant was lost, the last one known
+  /// before it; where none is, the first one known.
   double ev100_at(int64_t step);
   /// Has the camera an automatic exposure in `world`, at the same instants? In another World the
   /// meter ends.
@@ -48,6 +50,8 @@ class ExposureMeter {
   Status meter(const Snapshot& snapshot);
   // The last step of the schedule that is not after `step`.
   int64_t instant_of(int64_t step) const;
+  // The last step of the schedule before `step`, or its first.
+  int64_t instant_before(int64_t step) const;
 
   Simulator& simulator_;
   SharedRenderers& renderers_;

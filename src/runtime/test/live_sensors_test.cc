@@ -250,10 +250,11 @@ keys = [ { time = 0, level = 0.01 }, { time = 0.5, level = 0.01 }, { time = 0.50
   std::map<int64_t, double> ev;
   for (const CameraFrame& f : all) ev[f.index] = f.ev100;
   EXPECT_NEAR(ev[12], ev[5], 0.1) << "steady before the lamp";
+  EXPECT_NEAR(ev[13], ev[12], 0.1) << "exposed by what was metered before the lamp";
   const double rise = std::log2(100.0);
   for (int k = 14; k <= 37; ++k) {
-    // The first metering after the lamp is that of frame 13 at 0.52 s.
-    const double share = 1 - std::exp(-0.04 * (k - 12) / 0.2);
+    // The first metering after the lamp is that of frame 13 at 0.52 s, for frame 14.
+    const double share = 1 - std::exp(-0.04 * (k - 13) / 0.2);
     EXPECT_NEAR(ev[k] - ev[12], rise * share, 0.1) << k;
   }
   for (const CameraFrame& f : frames_of(world, request, 750, 400)) {

@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include "base/srgb.h"
 #include "render/film/tone_map.h"
+#include "render/test/scene_builder.h"
 #include "scene/test/temp_folder.h"
 #include "sensors/camera/camera_sensor.h"
 #include "sensors/depth/stereo_depth.h"
@@ -79,6 +81,39 @@ class CameraModelsTest : public ::testing::Test {
 std::string camera(const std::string& name, const std::string& more = "") {
   return "[[camera]]\nname = \"" + name +
          "\"\nlook_at = [0, 2, 0]\nfovy = 70\nwidth = 120\nheight = 90\n" + more;
+}
+
+// Matt patches under an even sky whose light is at the top of the scale: a patch of reflectance x
+// sends back x of it.
+TEST(DefaultCamera, ShowsAChartOfGreysAsSrgbDoes) {
+  constexpr float kEv100 = 8;
+  constexpr int kSide = 16;
+  for (const float grey : {0.02f, 0.03f, 0.09f, 0.18f, 0.36f, 0.5f, 0.59f, 0.75f, 0.9f}) {
+    SceneBuilder b;
+    const float top = max_luminance(kEv100);
+    b.description.sky.environment = {"even", 4, 2, std::vector<Vec3f>(4 * 2, {top, top, top})};
+    b.description.ev100 = kEv100;
+    b.add(ShapeType::kBox, {2, 2, 0.1f}, {}, b.add_diffuse({grey, grey, grey}));
+    const Affine3f X_WC = look_at({0, 0, 3}, {0, 0, 0});
+    CameraDescription eye;
+    eye.name = "eye";
+    eye.intrinsics = SceneBuilder::camera(X_WC, kSide, kSide, 40).intrinsics;
+    eye.X_WC = X_WC;
+    b.description.cameras.push_back(eye);
+    CameraRequest request{.camera = "eye", .width = kSide, .height = kSide};
+    request.outputs = {"rgb"};
+    request.render.spp = 64;
+    auto sensor = CameraSensor::create(b.description, request, 1);
+    ASSERT_TRUE(sensor.ok()) << sensor.error().to_string();
+    const auto renderer = b.make();
+    std::mutex mutex;
+    const auto frame = (*sensor)->capture(*renderer, mutex, b.frame, b.frame, 0);
+    for (size_t c = 0; c < 3; ++c) {
+      double mean = 0;
+      for (size_t i = c; i < frame->rgb.size(); i += 3) mean += frame->rgb[i];
+      EXPECT_NEAR(mean / (kSide * kSide), 255 * static_cast<double>(srgb_encode(grey)), 2) << grey;
+    }
+  }
 }
 
 TEST_F(CameraModelsTest, WithoutAnImagerThePictureIsTheLightsOwnBitByBit) {

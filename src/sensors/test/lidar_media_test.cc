@@ -2,8 +2,11 @@
 
 #include <cmath>
 
+#include "render/kernel/lidar/lidar_particles.h"
 #include "render/test/media_probe.h"
+#include "sensors/lidar/lidar_presets.h"
 #include "sensors/test/lidar_scene.h"
+#include "world/media/medium_presets.h"
 
 namespace gloam {
 namespace {
@@ -164,49 +167,103 @@ TEST(LidarInMedia, ThinFogGivesNoFalseReturnsWithoutNoise) {
   EXPECT_EQ(scan_fog(medium(0.4f, 0.4f, 0.9f), 1e-3f)->size(), 0u);
 }
 
-TEST(LidarInMedia, FalseReturnsOfSpeckleComeAsOftenAsTheExponentialLawSays) {
+// A lens takes the mean of thousands of speckles, so the echo of an even medium is the same in
+// every beam, but for the receiver's own noise: a twelfth of the threshold.
+TEST(LidarInMedia, FalseReturnsComeAsOftenAsTheReceiversNoiseSays) {
   SceneBuilder b;
   const float k = 0.3f, albedo = 0.9f;
   b.description.media.push_back(medium(k, k, albedo));
   add_slab(&b, 3.1f, 3.9f, 1e-2f);
   add_slab(&b, 6.1f, 6.9f, 1e-2f);
-  LidarOptions options = pencil(320, 320);
-  options.pulse_length = 1;
-  options.noise = true;
-  options.range_noise = 0;
-  options.intensity = "signal";
-  const double beta = 1e-2 * k * albedo / (4 * M_PI);
-  const double near = backscatter(1e-2 * k, beta, 3.1, 3.1, 3.9);
-  const double far = backscatter(1e-2 * k, beta, 5.3, 6.1, 6.9);  // 0.8 m of the first are behind
-  const double threshold = 1.5 * near;
-  options.range_at_10_percent = std::sqrt(0.1 / threshold);
-  const auto scan = scan_scene(b, options);
-  constexpr double n = 320 * 320;
-  double count[2] = {}, sum[2] = {};
-  for (size_t i = 0; i < scan->size(); ++i) {
-    const int slab = scan->range[i] < 5 ? 0 : 1;
-    ++count[slab];
-    sum[slab] += scan->intensity[i];
+  const double signal = backscatter(1e-2 * k, 1e-2 * k * albedo / (4 * M_PI), 3.1, 3.1, 3.9);
+  for (const double ratio : {0.85, 1.0, 1.15, 2.0}) {
+    LidarOptions options = pencil(160, 160);
+    options.pulse_length = 1;
+    options.noise = true;
+    options.range_noise = 0;
+    options.range_at_10_percent = std::sqrt(0.1 * ratio / signal);
+    const auto scan = scan_scene(b, options);
+    constexpr double n = 160 * 160;
+    // `ratio` = threshold over signal; sigma = threshold / 12.
+    const double expected = 0.5 * std::erfc(12 * (ratio - 1) / ratio / std::sqrt(2.0));
+    EXPECT_NEAR(static_cast<double>(scan->size()) / n, expected,
+                3 * std::sqrt(expected * (1 - expected) / n) + 1e-3)
+        << ratio;
+    for (size_t i = 0; i < scan->size(); ++i) EXPECT_NEAR(scan->range[i], 3.5, 0.5) << ratio;
   }
-  const double mean[2] = {near, far};
-  for (int slab = 0; slab < 2; ++slab) {
-    // The receiver's own noise, a twelfth of the threshold, is drawn on top of what is detected:
-    // some at the threshold drop again.
-    double share = 0, total = 0;  // of those that are reported: how many, and their signals' sum
-    constexpr int steps = 4000;
-    for (int i = 0; i < steps; ++i) {
-      const double z = -6 + 12 * (i + 0.5) / steps;  // normal quantile of the error
-      const double weight = std::exp(-0.5 * z * z) / std::sqrt(2 * M_PI) * 12 / steps;
-      const double least = threshold * std::max(1.0, 1 - z / 12);
-      const double above = weight * std::exp(-least / mean[slab]);
-      share += above;
-      // Without memory: what lies over a threshold exceeds it as the signal exceeds zero.
-      total += above * (least + mean[slab] + z / 12 * threshold);
+}
+
+/// A hall of dust in which one sees 12 m, as an OS1-64 does.
+struct DustyHall {
+  const MediumDescription& dust = *find_medium("dust");
+  const float density = static_cast<float>(kKoschmieder / 12) / dust.mass_extinction[1];
+  const double extinction = static_cast<double>(density * dust.mass_extinction[k905]);
+  const LidarOptics optics = find_lidar_preset("OS1-64")->make().optics;
+
+  /// O(r) exp(-2 k r) / r²
+  double reached(double r) const {
+    const double overlap = static_cast<double>(lidar::overlap(optics, static_cast<float>(r)));
+    return overlap * std::exp(-2 * extinction * r) / (r * r);
+  }
+  /// The strongest of the dust's bins of half a metre beyond the least range.
+  LidarEcho strongest() const {
+    LidarEcho peak{0, 0, 0};
+    constexpr int steps = 200;
+    for (int bin = 1; bin < 20; ++bin) {
+      double sum = 0, moment = 0;
+      for (int i = 0; i < steps; ++i) {
+        const double r = 0.5 * (bin + (i + 0.5) / steps);
+        if (r < static_cast<double>(optics.min_range)) continue;
+        sum += M_PI * extinction / 55 * reached(r) * 0.5 / steps;
+        moment += M_PI * extinction / 55 * reached(r) * 0.5 / steps * r;
+      }
+      if (sum > static_cast<double>(peak.signal))
+        peak = {static_cast<float>(moment / sum), static_cast<float>(sum), 0};
     }
-    EXPECT_NEAR(count[slab] / n, share, 3 * std::sqrt(share * (1 - share) / n)) << slab;
-    ASSERT_GT(count[slab], 100);
-    EXPECT_NEAR(sum[slab] / count[slab], total / share,
-                3 * std::hypot(mean[slab], threshold / 12) / std::sqrt(count[slab]));
+    return peak;
+  }
+  std::shared_ptr<const LidarScan> scan_wall(double reflectance, double distance) const {
+    SceneBuilder b;
+    const auto albedo = static_cast<float>(reflectance);
+    add_wall(&b, {0.5f, 50, 50}, {static_cast<float>(distance) + 0.5f, 0, 0},
+             b.add_diffuse({albedo, albedo, albedo}));
+    b.description.media.push_back(dust);
+    VolumeDescription air;
+    air.name = "hall";
+    air.size = {40, 40, 40};
+    air.even_density = density;
+    b.description.volumes.push_back(air);
+    LidarOptions options = pencil();
+    options.range_at_10_percent = {};
+    options.min_range = {};
+    options.receiver_diameter = {};
+    options.returns = "strongest";
+    return scan_scene(b, options);
+  }
+};
+
+// A beam ends at a matt wall up to the distance at which the LiDAR equation makes it weaker than
+// the dust before the sensor, and in that dust beyond.
+TEST(LidarInMedia, InAHallOfDustBeamsEndWhereTheLidarEquationSays) {
+  const DustyHall hall;
+  const LidarEcho dust = hall.strongest();
+  ASSERT_GT(dust.signal, 2 * hall.optics.threshold) << "dust is seen";
+  for (const double reflectance : {0.1, 0.3, 0.8}) {
+    double crossing = 1.5;
+    while (reflectance * hall.reached(crossing) > static_cast<double>(dust.signal))
+      crossing += 0.01;
+    std::printf("%.0f %%: walls up to %.1f m, transmission %.2f; dust at %.2f m, %.1f thresholds\n",
+                100 * reflectance, crossing, std::exp(-hall.extinction * crossing),
+                static_cast<double>(dust.range),
+                static_cast<double>(dust.signal / hall.optics.threshold));
+    const auto near = hall.scan_wall(reflectance, 0.93 * crossing);
+    ASSERT_EQ(near->size(), 1u);
+    EXPECT_NE(near->part[0], 0u);
+    EXPECT_NEAR(near->range[0], 0.93 * crossing, 0.01);
+    const auto far = hall.scan_wall(reflectance, 1.07 * crossing);
+    ASSERT_EQ(far->size(), 1u);
+    EXPECT_EQ(far->part[0], 0u);
+    EXPECT_NEAR(far->range[0], dust.range, 0.1);
   }
 }
 

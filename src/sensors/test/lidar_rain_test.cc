@@ -5,6 +5,7 @@
 
 #include "render/kernel/lidar/lidar_particles.h"
 #include "sensors/lidar/lidar_particle_table.h"
+#include "sensors/lidar/lidar_presets.h"
 #include "sensors/test/lidar_scene.h"
 
 namespace gloam {
@@ -63,6 +64,59 @@ TEST(LidarInRain, TheWallBehindItIsSeenAndFewBeamsEndAtDrops) {
       EXPECT_LE(static_cast<double>(c.drops), 0.05 * static_cast<double>(c.beams)) << rate << noise;
       std::printf("%s %.0f mm/h: wall %zu of %zu, drops %zu of %zu\n", noise ? "noisy" : "exact",
                   rate, c.wall, clear, c.drops, c.beams);
+    }
+  }
+}
+
+/// False points that one beam of a sensor must have in rain, on the mean: every drop whose echo on
+/// the axis would be p0 is seen where the beam's profile leaves more than the threshold of it, in
+/// the area pi a b / 2 ln(p0 / threshold) around the axis. Drops send back 0.0236 of their radius
+/// squared [m²/sr] (van de Hulst 1957, 12.2, for n = 1.328).
+double expected_points(const LidarOptics& optics, double rain) {
+  constexpr double kStep = 0.02;  // [m]
+  const ParticleSet drops = rain_particles(rain);
+  double extinction = 0, sum = 0;
+  for (const ParticleClass& c : drops.classes)
+    extinction += static_cast<double>(c.number * 0.5f * kPi * sqr(c.diameter));
+  for (double r = static_cast<double>(optics.min_range) + 0.5 * kStep; r < 60; r += kStep) {
+    const auto range = static_cast<float>(r);
+    const Vec2f half = lidar::half_widths(optics, range);
+    const double area = static_cast<double>(0.5f * kPi * half.x * half.y);
+    const double arrives = static_cast<double>(lidar::overlap(optics, range)) / (r * r) *
+                           std::exp(-2 * extinction * r);
+    for (const ParticleClass& c : drops.classes) {
+      const double backscatter = 0.0236 * 0.25 * static_cast<double>(sqr(c.diameter));
+      const double p0 = M_PI / area * backscatter * arrives;
+      const double ratio = p0 / static_cast<double>(optics.threshold);
+      const double rim = 2.0 * 1.5 * 1.5;  // no drops are drawn beyond 1.5 half widths
+      if (ratio > 1)
+        sum += static_cast<double>(c.number) * area * std::min(std::log(ratio), rim) * kStep;
+    }
+  }
+  return sum;
+}
+
+// Beams into the open sky, of the sensor as it is and of one that detects a twentieth of the light.
+TEST(LidarInRain, FalsePointsAreAsManyAsDropsInTheBeamSay) {
+  for (const double range : {35.0, 150.0}) {
+    for (const double rate : {2.0, 10.0, 50.0}) {
+      LidarOptions options = vlp_16();
+      options.range_at_10_percent = range;
+      options.returns = "all";
+      LidarOptics optics = find_lidar_preset("VLP-16")->make().optics;
+      optics.threshold = lidar_threshold(range);
+      SceneBuilder sky = wall_scene(rate);
+      sky.description.instances.clear();
+      double found = 0, beams = 0;
+      for (int scan = 0; scan < 4; ++scan) {
+        const Count c = count(*scan_scene(sky, options, 0, {}, scan));
+        found += static_cast<double>(c.drops);
+        beams += static_cast<double>(c.beams);
+      }
+      const double expected = beams * expected_points(optics, rate);
+      std::printf("10 %% at %.0f m, %.0f mm/h: %.0f false points, expected %.1f, of %.0f beams\n",
+                  range, rate, found, expected, beams);
+      EXPECT_NEAR(found, expected, 4 * std::sqrt(expected) + 0.1 * expected + 1);
     }
   }
 }
