@@ -13,6 +13,7 @@
 
 #include "command.h"
 #include "interrupt.h"
+#include "print.h"
 
 namespace gloam::cli {
 namespace {
@@ -29,7 +30,7 @@ std::atomic<bool> progress_line_open{false};  // jobs show progress from their o
 
 int fail(const Error& error) {
   finish_progress();
-  std::fprintf(stderr, "gloam: error: %s\n", error.to_string().c_str());
+  tell("gloam: error: {}\n", error.to_string());
   return error.exit_code();
 }
 
@@ -49,13 +50,13 @@ ProgressCallback progress_display(const Globals& globals) {
       if (terminal) {
         constexpr int kWidth = 30;
         const int filled = static_cast<int>(fraction * kWidth);
-        std::fprintf(stderr, "\r\033[K%s [%s%s] %3d %%, %s%s", progress.what.c_str(),
+        std::fprintf(stderr, "\r\033[K%s [%s%s] %3d %%, %s%s", printable(progress.what).c_str(),
                      std::string(filled, '#').c_str(), std::string(kWidth - filled, '.').c_str(),
                      static_cast<int>(fraction * 100), as_time(progress.seconds).c_str(),
                      eta.c_str());
         progress_line_open = true;
       } else {
-        std::fprintf(stderr, "gloam: %s: %d %%, %s%s\n", progress.what.c_str(),
+        std::fprintf(stderr, "gloam: %s: %d %%, %s%s\n", printable(progress.what).c_str(),
                      static_cast<int>(fraction * 100), as_time(progress.seconds).c_str(),
                      eta.c_str());
       }
@@ -111,13 +112,12 @@ Status apply_packages(FileAccess& access, const std::vector<std::string>& packag
 
 namespace {
 
-void tell(const char* heading, const std::vector<Error>& errors) {
+void tell_all(const char* heading, const std::vector<Error>& errors) {
   constexpr size_t kMost = 20;
   for (size_t i = 0; i < std::min(errors.size(), kMost); ++i)
-    std::fprintf(stderr, "gloam: %s: %s\n", heading, errors[i].to_string().c_str());
+    tell("gloam: {}: {}\n", heading, errors[i].to_string());
   if (errors.size() > kMost)
-    std::fprintf(stderr, "gloam: %s: %zu more, which gloam info lists\n", heading,
-                 errors.size() - kMost);
+    tell("gloam: {}: {} more, which gloam info lists\n", heading, errors.size() - kMost);
 }
 
 }  // namespace
@@ -133,8 +133,8 @@ Result<World> compile(const Scene& scene, const Globals& globals, const std::str
                                          : World::compile_at(scene, keyframe, tell_progress);
   finish_progress();
   if (!world.ok()) return world;
-  tell("note", world->notes());
-  tell("warning: not supported", world->unsupported());
+  tell_all("note", world->notes());
+  tell_all("warning: not supported", world->unsupported());
   return world;
 }
 

@@ -15,8 +15,8 @@ namespace {
 std::atomic<bool> stop_requested{false};
 
 void on_signal(int signal) {
-  if (stop_requested.exchange(true))
-    ::_exit(128 + signal);  // the second one does not wait for files
+  // The second one does not wait for files. SIGXCPU comes every second from then on.
+  if (stop_requested.exchange(true) && signal != SIGXCPU) ::_exit(128 + signal);
 }
 
 }  // namespace
@@ -24,6 +24,9 @@ void on_signal(int signal) {
 void catch_interrupts() {
   std::signal(SIGINT, on_signal);
   std::signal(SIGTERM, on_signal);
+  std::signal(SIGXCPU, on_signal);  // ulimit -t: seconds are left
+  // The terminal is gone. nohup has it ignored, and so it stays.
+  if (std::signal(SIGHUP, on_signal) == SIG_IGN) std::signal(SIGHUP, SIG_IGN);
   std::signal(SIGPIPE, SIG_IGN);
   std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow is an error where it is written
 }

@@ -1,5 +1,5 @@
 #pragma once
-// Handling of Ctrl-C and SIGTERM.
+// Handling of Ctrl-C, SIGTERM, SIGHUP and SIGXCPU.
 
 #include <condition_variable>
 #include <functional>
@@ -8,7 +8,7 @@
 
 namespace gloam::cli {
 
-/// From now on Ctrl-C and SIGTERM set a flag; a second one ends the process with 130.
+/// From now on Ctrl-C, SIGTERM, SIGHUP and SIGXCPU set a flag; a second one ends the process.
 void catch_interrupts();
 bool interrupted();
 

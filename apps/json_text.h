@@ -4,12 +4,15 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "gloam/text.h"
+
 namespace gloam::cli {
 
-/// `json` as text. Bytes that are no UTF-8, as a file's path may have, become U+FFFD.
+/// `json` as text. Bytes that are no UTF-8, as a file's path may have, become U+FFFD; what a
+/// terminal would obey is escaped, which JSON allows in strings, and elsewhere there is none of it.
 template <class Json>
 std::string json_text(const Json& json, int indent = 2) {
-  return json.dump(indent, ' ', false, Json::error_handler_t::replace);
+  return printable(json.dump(indent, ' ', false, Json::error_handler_t::replace), "\n");
 }
 
 }  // namespace gloam::cli

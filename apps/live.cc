@@ -6,6 +6,7 @@
 #include <thread>
 
 #include "gloam/log_player.h"
+#include "print.h"
 
 namespace gloam::cli {
 namespace {
@@ -88,7 +89,7 @@ int run_live(LiveRun run, const LiveCommand& command, EndOnInterrupt& starting) 
     if (!started.ok()) return fail(started.error());
     bridges = std::move(*started);
     for (const auto& bridge : bridges->list())
-      std::fprintf(stderr, "gloam: %s: %s\n", bridge->name().c_str(), bridge->address().c_str());
+      tell("gloam: {}: {}\n", bridge->name(), bridge->address());
   }
   starting.release();
   begin(run, command);
@@ -98,7 +99,7 @@ int run_live(LiveRun run, const LiveCommand& command, EndOnInterrupt& starting) 
   int code = status.ok() ? 0 : fail(status.error());
   if (log != nullptr) {
     if (const Status finished = log->finish(); !finished.ok()) code = fail(finished.error());
-    std::fprintf(stderr, "gloam: %s\n", run.log.file.c_str());
+    tell("gloam: {}\n", run.log.file.string());
   }
   return code;
 }

@@ -9,6 +9,7 @@
 #include "gloam/log.h"
 #include "gloam/topics.h"
 #include "json_text.h"
+#include "print.h"
 
 namespace gloam::cli {
 
@@ -38,17 +39,16 @@ int report_log(const std::string& file, const Globals& globals) {
     std::printf("%s\n", json_text(json).c_str());
     return log->damage.empty() ? 0 : 3;
   }
-  fmt::print("{:.2f} MiB, {} messages in {} chunks, {:.2f} : 1; {:.3f} s; profile '{}', by '{}'\n",
-             static_cast<double>(log->bytes) / (1 << 20), log->messages, log->chunks,
-             log->compression, log->duration, log->profile, log->library);
-  if (log->has_run)
-    fmt::print("a run of scene '{}': `gloam replay {} --verify`\n", log->scene, file);
-  if (!log->damage.empty()) fmt::print("damaged: {}: `gloam recover {}`\n", log->damage, file);
-  fmt::print("\n  {:<40} {:<36} {:>9} {:>9}\n", "topic", "type", "messages", "rate");
+  say("{:.2f} MiB, {} messages in {} chunks, {:.2f} : 1; {:.3f} s; profile '{}', by '{}'\n",
+      static_cast<double>(log->bytes) / (1 << 20), log->messages, log->chunks, log->compression,
+      log->duration, log->profile, log->library);
+  if (log->has_run) say("a run of scene '{}': `gloam replay {} --verify`\n", log->scene, file);
+  if (!log->damage.empty()) say("damaged: {}: `gloam recover {}`\n", log->damage, file);
+  say("\n  {:<40} {:<36} {:>9} {:>9}\n", "topic", "type", "messages", "rate");
   for (const LoggedTopic& topic : log->topics)
     if (topic.messages > 0)
-      fmt::print("  {:<40} {:<36} {:>9} {:>9}\n", topic.name, topic.type, topic.messages,
-                 topic.rate > 0 ? fmt::format("{:.1f} Hz", topic.rate) : "");
+      say("  {:<40} {:<36} {:>9} {:>9}\n", topic.name, topic.type, topic.messages,
+          topic.rate > 0 ? fmt::format("{:.1f} Hz", topic.rate) : "");
   return log->damage.empty() ? 0 : 3;
 }
 
@@ -71,15 +71,14 @@ int report_topics(const World& world, const Globals& globals) {
     std::printf("%s\n", json_text(json).c_str());
     return 0;
   }
-  fmt::print("  {:<5} {:<36} {:<34} {:<10} {}\n", "", "topic", "type", "rate", "of");
+  say("  {:<5} {:<36} {:<34} {:<10} {}\n", "", "topic", "type", "rate", "of");
   for (const TopicInfo& topic : *topics) {
     const std::string rate = topic.is_input         ? "-"
                              : topic.qos.is_latched ? "latched"
                              : topic.rate.num == 0  ? "every step"
                                                     : fmt::format("{:g} Hz", topic.rate.value());
-    fmt::print("  {:<5} {:<36} {:<34} {:<10} {}{}\n", topic.is_input ? "hears" : "says", topic.name,
-               topic.type, rate, topic.source,
-               topic.is_logged || topic.is_input ? "" : " (not in logs)");
+    say("  {:<5} {:<36} {:<34} {:<10} {}{}\n", topic.is_input ? "hears" : "says", topic.name,
+        topic.type, rate, topic.source, topic.is_logged || topic.is_input ? "" : " (not in logs)");
   }
   return 0;
 }

@@ -6,12 +6,14 @@
 #include <algorithm>
 #include <array>
 #include <cstdio>
+#include <cstdlib>
 #include <iostream>
 #include <system_error>
 
 #include "command.h"
 #include "gloam/program.h"
 #include "interrupt.h"
+#include "out_of_memory.h"
 #include "words.h"
 
 namespace gloam::cli {
@@ -21,6 +23,16 @@ constexpr std::array kCommands = {add_demo,     add_run,     add_record, add_rep
                                   add_recover,  add_render,  add_info,   add_export,
                                   add_evaluate, add_report,  add_check,  add_cache,
                                   add_props,    add_convert, add_schema, add_completion};
+
+/// Variables of the environment that hold what they must.
+Status check_environment() {
+  const char* size = std::getenv("GLOAM_CACHE_SIZE");
+  if (size == nullptr || *size == 0) return {};
+  const Result<CacheInfo> cache = cache_info();
+  // What else is wrong with a cache keeps nobody from working.
+  if (!cache.ok() && cache.error().message.starts_with("GLOAM_CACHE_SIZE")) return cache.error();
+  return {};
+}
 
 int run_program(int argc, char** argv) {
   CLI::App app{
@@ -55,6 +67,7 @@ int run_program(int argc, char** argv) {
   }
   if (verbose) set_log_level(LogLevel::kDebug);
   if (globals.quiet) set_log_level(LogLevel::kWarning);
+  if (const Status status = check_environment(); !status.ok()) return fail(status.error());
   catch_interrupts();
   return action();
 }
@@ -78,14 +91,15 @@ int main(int argc, char** argv) {
     return 1;
   }
 #endif
+  gloam::cli::end_when_out_of_memory();
   try {
     const int code = gloam::cli::run_program(argc, argv);
     return code != 0 ? code : gloam::cli::finish_data();
-  } catch (const std::system_error&) {
+  } catch (const std::system_error& error) {
+    if (gloam::cli::is_want_of_memory(error)) gloam::cli::end_out_of_memory();
     if (std::ferror(stdout) == 0) throw;
     return gloam::cli::finish_data();  // fmt::print throws where nobody reads any more
   } catch (const std::bad_alloc&) {
-    std::cerr << "gloam: error: out of memory (lower the resolution or the size of the scene)\n";
-    return 1;
+    gloam::cli::end_out_of_memory();
   }
 }

@@ -7,6 +7,7 @@
 
 #include "gloam/outputs.h"
 #include "gloam/program.h"
+#include "print.h"
 
 namespace gloam::cli {
 namespace {
@@ -45,9 +46,7 @@ void tell_void_outputs(const std::vector<std::string>& outputs, const Scene& sce
                        const World& world) {
   for (const std::string& output : outputs) {
     const std::string why = why_void(output, scene, world);
-    if (!why.empty())
-      std::fprintf(stderr, "gloam: warning: --output %s names nothing here: %s\n", output.c_str(),
-                   why.c_str());
+    if (!why.empty()) tell("gloam: warning: --output {} names nothing here: {}\n", output, why);
   }
 }
 

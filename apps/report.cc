@@ -1,6 +1,7 @@
 #include "report.h"
 
 #include "json_text.h"
+#include "print.h"
 
 #include <fmt/format.h>
 
@@ -16,8 +17,7 @@ int run_and_report(const World& world, const RunRequest& request, const Globals&
 int tell_of(const Result<RunReport>& report, const Globals& globals) {
   finish_progress();
   if (!report.ok()) return fail(report.error());
-  for (const std::string& note : report->notes)
-    std::fprintf(stderr, "gloam: note: %s\n", note.c_str());
+  for (const std::string& note : report->notes) tell("gloam: note: {}\n", note);
   const double factor = report->wall_time > 0 ? report->sim_time / report->wall_time : 0;
   if (globals.json) {
     nlohmann::ordered_json json = {
@@ -33,14 +33,13 @@ int tell_of(const Result<RunReport>& report, const Globals& globals) {
         {"error", report->status.ok() ? "" : report->status.error().to_string()}};
     std::printf("%s\n", json_text(json).c_str());
   } else {
-    std::printf("simulated %.3f s in %.1f s (%.2f x real time), %lld steps, state hash %016llx\n",
-                report->sim_time, report->wall_time, factor, static_cast<long long>(report->steps),
-                static_cast<unsigned long long>(report->hash));
+    say("simulated {:.3f} s in {:.1f} s ({:.2f} x real time), {} steps, state hash {:016x}\n",
+        report->sim_time, report->wall_time, factor, report->steps, report->hash);
     if (!report->out.empty()) {
       const std::string pictures =
           report->frames > 0 ? fmt::format(" ({} pictures)", report->frames) : std::string();
-      std::printf("results in %s%s:\n", report->out.string().c_str(), pictures.c_str());
-      for (const std::string& file : report->written) std::printf("  %s\n", file.c_str());
+      say("results in {}{}:\n", report->out.string(), pictures);
+      for (const std::string& file : report->written) say("  {}\n", file);
     }
   }
   return report->status.ok() ? 0 : fail(report->status.error());

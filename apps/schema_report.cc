@@ -10,6 +10,7 @@
 #include "gloam/mjcf.h"
 #include "interrupt.h"
 #include "json_text.h"
+#include "print.h"
 
 namespace gloam::cli {
 namespace {
@@ -52,7 +53,7 @@ void print_json(const SchemaCoverage& coverage, const Count& attributes, const C
   }
   Json& by_attribute = json["attribute_fields"] = Json::object();
   for (const auto& attribute : coverage.attributes) by_attribute[attribute.name] = attribute.fields;
-  fmt::print("{}\n", json_text(json, 1));
+  say("{}\n", json_text(json, 1));
 }
 
 // "mujoco/actuator/motor/gear" of thirty elements as "gear of actuator/motor, actuator/position …".
@@ -71,20 +72,20 @@ std::string in_short(const std::vector<std::string>& attributes) {
 void print_text(const SchemaCoverage& coverage, const Count& attributes, const Count& fields) {
   const auto of_mjcf = static_cast<size_t>(
       std::ranges::count(coverage.attributes, false, &SchemaCoverage::Attribute::is_spec_only));
-  fmt::print("attributes: {} of {} mirrored: {} of MJCF's {} elements, {} that only mjSpec has\n",
-             attributes.mirrored(), attributes.total, of_mjcf, coverage.elements,
-             coverage.attributes.size() - of_mjcf);
-  fmt::print("fields of mjSpec: {} of {} mirrored\n\n", fields.mirrored(), fields.total);
+  say("attributes: {} of {} mirrored: {} of MJCF's {} elements, {} that only mjSpec has\n",
+      attributes.mirrored(), attributes.total, of_mjcf, coverage.elements,
+      coverage.attributes.size() - of_mjcf);
+  say("fields of mjSpec: {} of {} mirrored\n\n", fields.mirrored(), fields.total);
   for (const auto& field : coverage.fields) {
-    fmt::print("  {:<34} {}\n", field.name,
-               !field.attributes.empty()    ? in_short(field.attributes)
-               : field.follows_from.empty() ? "MISSING"
-                                            : "(" + field.follows_from + ")");
+    say("  {:<34} {}\n", field.name,
+        !field.attributes.empty()    ? in_short(field.attributes)
+        : field.follows_from.empty() ? "MISSING"
+                                     : "(" + field.follows_from + ")");
   }
   for (const Count* count : {&attributes, &fields}) {
-    for (const std::string& name : count->missing) fmt::print("missing: {}\n", name);
+    for (const std::string& name : count->missing) say("missing: {}\n", name);
   }
-  fmt::print("\n--json has the whole table, both ways\n");
+  say("\n--json has the whole table, both ways\n");
 }
 
 }  // namespace

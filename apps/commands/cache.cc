@@ -9,6 +9,7 @@
 #include "command.h"
 #include "gloam/program.h"
 #include "json_text.h"
+#include "print.h"
 
 namespace gloam::cli {
 namespace {
@@ -60,18 +61,17 @@ int list(const Globals& globals) {
                  {"limit_bytes", info->limit_bytes},
                  {"kinds", Json::array()}};
     for (const CacheKind& kind : info->kinds) json["kinds"].push_back(as_json(kind));
-    fmt::print("{}\n", json_text(json));
+    say("{}\n", json_text(json));
     return 0;
   }
-  fmt::print("{}: {} of at most {}\n", info->folder.string(), mebibytes(bytes),
-             mebibytes(info->limit_bytes));
+  say("{}: {} of at most {}\n", info->folder.string(), mebibytes(bytes),
+      mebibytes(info->limit_bytes));
   for (const CacheKind& kind : info->kinds) {
-    fmt::print("\n{} in {}\n  {}\n  {}, {}", kind.name, kind.folder.string(), kind.what,
-               entries_of(kind), mebibytes(kind.bytes));
+    say("\n{} in {}\n  {}\n  {}, {}", kind.name, kind.folder.string(), kind.what, entries_of(kind),
+        mebibytes(kind.bytes));
     if (kind.oldest_use)
-      fmt::print("; last used from {} to {}", local_time(kind.oldest_use),
-                 local_time(kind.newest_use));
-    fmt::print("\n");
+      say("; last used from {} to {}", local_time(kind.oldest_use), local_time(kind.newest_use));
+    say("\n");
   }
   return 0;
 }
@@ -83,9 +83,9 @@ int clear(const std::string& which, const Globals& globals) {
   for (const CacheKind& kind : *removed) {
     json["removed"].push_back(as_json(kind));
     if (!globals.json)
-      fmt::print("{}: {} removed, {}\n", kind.name, entries_of(kind), mebibytes(kind.bytes));
+      say("{}: {} removed, {}\n", kind.name, entries_of(kind), mebibytes(kind.bytes));
   }
-  if (globals.json) fmt::print("{}\n", json_text(json));
+  if (globals.json) say("{}\n", json_text(json));
   return 0;
 }
 

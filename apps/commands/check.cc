@@ -12,6 +12,7 @@
 #include "gloam/model_tools.h"
 #include "interrupt.h"
 #include "json_text.h"
+#include "print.h"
 
 namespace gloam::cli {
 namespace {
@@ -69,11 +70,10 @@ std::string verdict(const ModelCheck& check) {
 }
 
 void print_line(const std::string& file, const ModelCheck& check, double seconds) {
-  if (!check.status.ok()) return fmt::print("{}: FAILED: {}\n", file, verdict(check));
-  fmt::print("{}: {} bodies, {} joints, {} geoms: {}{} ({} fields, export {:.2f} MB, {:.2f} s)\n",
-             file, check.bodies, check.joints, check.geoms,
-             check.passed() ? "" : "FAILED: ", verdict(check), check.compared,
-             static_cast<double>(check.export_bytes) / 1e6, seconds);
+  if (!check.status.ok()) return say("{}: FAILED: {}\n", file, verdict(check));
+  say("{}: {} bodies, {} joints, {} geoms: {}{} ({} fields, export {:.2f} MB, {:.2f} s)\n", file,
+      check.bodies, check.joints, check.geoms, check.passed() ? "" : "FAILED: ", verdict(check),
+      check.compared, static_cast<double>(check.export_bytes) / 1e6, seconds);
 }
 
 Json as_json(const std::string& file, const ModelCheck& check, double seconds) {
@@ -123,9 +123,9 @@ int check(const CheckCommand& command, const Globals& globals) {
   const size_t count = command.files.size();
   if (globals.json) {
     const Json json = {{"models", models}, {"passed", passed}, {"failed", count - passed}};
-    fmt::print("{}\n", json_text(json));
+    say("{}\n", json_text(json));
   } else if (count > 1) {
-    fmt::print("{} of {} passed\n", passed, count);
+    say("{} of {} passed\n", passed, count);
   }
   return passed == count ? 0 : 1;
 }

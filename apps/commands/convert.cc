@@ -12,6 +12,7 @@
 #include "gloam/world.h"
 #include "interrupt.h"
 #include "json_text.h"
+#include "print.h"
 
 namespace gloam::cli {
 namespace {
@@ -19,6 +20,8 @@ namespace {
 struct ConvertCommand {
   ObjectOptions object;
   std::string file, scale = "1";
+  FileAccess access;
+  std::vector<std::string> packages;
 };
 
 // "2" or "1,1,2".
@@ -58,10 +61,12 @@ int convert(ConvertCommand command, const Globals& globals) {
   command.object.name = command.object.file.stem().string();
   if (const Status status = parse_scale(command.scale, &command.object.scale); !status.ok())
     return fail(status.error());
+  if (const Status status = apply_packages(command.access, command.packages); !status.ok())
+    return fail(status.error());
   const EndOnInterrupt watched;
   const ProgressCallback show = progress_display(globals);
   const Result<ObjectReport> made =
-      convert_object(command.object, {}, [&](const Progress& progress) {
+      convert_object(command.object, command.access, [&](const Progress& progress) {
         show(progress);
         return true;
       });
@@ -80,18 +85,18 @@ int convert(ConvertCommand command, const Globals& globals) {
                                          {"max_distance", r.max_distance},
                                          {"seconds", r.seconds},
                                          {"notes", r.notes}};
-    fmt::print("{}\n", json_text(json));
+    say("{}\n", json_text(json));
     return 0;
   }
-  fmt::print("mesh       {} triangles, {}, {:.3g} x {:.3g} x {:.3g} m\n", r.triangles,
-             r.is_closed ? "closed" : "not closed", r.size.x, r.size.y, r.size.z);
-  fmt::print("mass       {:.4g} kg of {:.4g} m³\n", r.mass, r.volume);
-  fmt::print("colliders  {}, in {:.2f} s\n", count_kinds(r.colliders), r.seconds);
+  say("mesh       {} triangles, {}, {:.3g} x {:.3g} x {:.3g} m\n", r.triangles,
+      r.is_closed ? "closed" : "not closed", r.size.x, r.size.y, r.size.z);
+  say("mass       {:.4g} kg of {:.4g} m³\n", r.mass, r.volume);
+  say("colliders  {}, in {:.2f} s\n", count_kinds(r.colliders), r.seconds);
   if (!r.colliders.empty())
-    fmt::print("overlap    {}surfaces {:.3g} mm apart in the mean, {:.3g} mm at most\n",
-               r.is_closed ? fmt::format("{:.1f} % of the volumes, ", 100 * r.shared) : "",
-               1e3 * r.mean_distance, 1e3 * r.max_distance);
-  for (const std::string& note : r.notes) fmt::print("note       {}\n", note);
+    say("overlap    {}surfaces {:.3g} mm apart in the mean, {:.3g} mm at most\n",
+        r.is_closed ? fmt::format("{:.1f} % of the volumes, ", 100 * r.shared) : "",
+        1e3 * r.mean_distance, 1e3 * r.max_distance);
+  for (const std::string& note : r.notes) say("note       {}\n", note);
   return 0;
 }
 
@@ -115,6 +120,7 @@ void add_convert(CLI::App& app, Globals& globals, Action& action) {
   sub->add_option("--concavity", o.concavity,
                   "hulls: how far a part may be from its hull, of the size: 0.01 … 1");
   sub->add_option("--max-hulls", o.max_hulls, "hulls: at most, 1 … 256");
+  add_access_options(*sub, command->access, command->packages);
   sub->footer(
       "Examples:\n  gloam convert assets/models/lantern/lantern.glb --colliders hull\n"
       "  gloam convert part.stl --unit 0.001 --up y --density 2700\n"

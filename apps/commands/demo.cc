@@ -8,6 +8,7 @@
 
 #include "gloam/program.h"
 #include "json_text.h"
+#include "print.h"
 #include "report.h"
 #include "run_options.h"
 
@@ -105,7 +106,7 @@ int demo_adversity(const DemoCommand& command, const Globals& globals) {
   if (globals.json) {
     std::printf("%s\n", json_text(json).c_str());
   } else {
-    std::fprintf(stderr, "gloam: videos of both places are in %s\n", request.out.string().c_str());
+    tell("gloam: videos of both places are in {}\n", request.out.string());
   }
   return 0;
 }

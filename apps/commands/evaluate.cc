@@ -15,6 +15,7 @@
 #include "command.h"
 #include "gloam/report.h"
 #include "json_text.h"
+#include "print.h"
 #include "trajectory_source.h"
 
 namespace gloam::cli {
@@ -137,32 +138,30 @@ void print_json(const EvaluateCommand& command, const Evaluation& found) {
 
 void print_row(const std::string& name, const PoseErrors& errors, double factor) {
   const ErrorStatistics& s = errors.statistics;
-  fmt::print("{:<30}", name);
+  say("{:<30}", name);
   for (const double value : {s.rmse, s.mean, s.median, s.std, s.min, s.max})
-    fmt::print(" {:>10.5g}", factor * value);
-  fmt::print(" {:>7}\n", errors.values.size());
+    say(" {:>10.5g}", factor * value);
+  say(" {:>7}\n", errors.values.size());
 }
 
 void print_text(const EvaluateCommand& command, const Evaluation& found) {
   const TrajectoryPair& pair = found.pair;
-  fmt::print("reference  {}: {} poses\nestimate   {}: {} poses\n", command.reference,
-             found.reference_poses, command.estimate, found.estimate_poses);
-  fmt::print("{} at the same times, {:.5g} m long in the reference, {:.5g} m in the estimate\n",
-             pair.reference.size(), pair.reference.path_length(), pair.estimate.path_length());
+  say("reference  {}: {} poses\nestimate   {}: {} poses\n", command.reference,
+      found.reference_poses, command.estimate, found.estimate_poses);
+  say("{} at the same times, {:.5g} m long in the reference, {:.5g} m in the estimate\n",
+      pair.reference.size(), pair.reference.path_length(), pair.estimate.path_length());
   const RotationRows& R = found.alignment.R_AB;
   const Vec3& p = found.alignment.p_AB;
   const double cosine = std::clamp((R[0] + R[4] + R[8] - 1) / 2, -1.0, 1.0);
-  fmt::print(
-      "aligned by {}: turned by {:.4g} deg, moved by {:.4g} {:.4g} {:.4g} m, scale {:.6g}\n\n",
+  say("aligned by {}: turned by {:.4g} deg, moved by {:.4g} {:.4g} {:.4g} m, scale {:.6g}\n\n",
       command.align, std::acos(cosine) * kDegrees, p.x, p.y, p.z, found.alignment.scale);
-  fmt::print("{:<30}", "");
-  for (const char* name : {"rmse", "mean", "median", "std", "min", "max"})
-    fmt::print(" {:>10}", name);
-  fmt::print(" {:>7}\n", "count");
+  say("{:<30}", "");
+  for (const char* name : {"rmse", "mean", "median", "std", "min", "max"}) say(" {:>10}", name);
+  say(" {:>7}\n", "count");
   print_row("ATE translation [m]", found.absolute.translation, 1);
   print_row("ATE rotation [deg]", found.absolute.angle, kDegrees);
   if (!found.relative) {
-    std::fprintf(stderr, "gloam: note: no relative errors: %s\n", found.no_relative.c_str());
+    tell("gloam: note: no relative errors: {}\n", found.no_relative);
     return;
   }
   const std::string per = fmt::format("per {:g} {}", command.delta.value_or(1),

@@ -9,6 +9,7 @@
 #include "gloam/log_export.h"
 #include "gloam/report.h"
 #include "log_report.h"
+#include "print.h"
 #include "run_options.h"
 #include "trajectory_source.h"
 
@@ -38,7 +39,7 @@ const std::map<std::string, TopicWriter> kTopicWriters = {
 
 int tell_count(const ExportCommand& command, const Result<int64_t>& count, const char* parts) {
   if (!count.ok()) return fail(count.error());
-  std::printf("%s: %lld %s\n", command.out.c_str(), static_cast<long long>(*count), parts);
+  say("{}: {} {}\n", command.out, *count, parts);
   return 0;
 }
 
@@ -72,7 +73,7 @@ int export_log(const ExportCommand& command) {
   out << trajectory_text(*poses, kTrajectories.at(command.to));
   if (!out.flush())
     return fail({ErrorKind::kIo, "cannot write " + command.out, {}, "is the disk full?"});
-  std::printf("%s: %zu poses of %s\n", command.out.c_str(), poses->size(), topic->c_str());
+  say("{}: {} poses of {}\n", command.out, poses->size(), *topic);
   return 0;
 }
 
@@ -82,9 +83,8 @@ int export_scene(ExportCommand& command, const Globals& globals) {
   std::vector<Error> left_out;
   if (const Status status = world->export_mjcf(command.out, &left_out); !status.ok())
     return fail(status.error());
-  for (const Error& error : left_out)
-    std::fprintf(stderr, "gloam: note: %s\n", error.to_string().c_str());
-  std::printf("%s\n", (std::filesystem::path(command.out) / "scene.xml").string().c_str());
+  for (const Error& error : left_out) tell("gloam: note: {}\n", error.to_string());
+  say("{}\n", (std::filesystem::path(command.out) / "scene.xml").string());
   return 0;
 }
 

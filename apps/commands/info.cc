@@ -10,6 +10,7 @@
 
 #include "json_text.h"
 #include "log_report.h"
+#include "print.h"
 #include "run_options.h"
 #include "schema_report.h"
 
@@ -64,37 +65,36 @@ void print_json(const WorldInfo& info, const NotDrawn& not_drawn,
 
 void print_text(const WorldInfo& info, const NotDrawn& not_drawn,
                 const std::vector<Section>& sections) {
-  fmt::print("{} positions, {} velocities, {} controls; time step {} s; mass {:.3f} kg\n", info.nq,
-             info.nv, info.nu, info.timestep, info.mass);
-  fmt::print("{:.2f} MiB of model, {} triangles drawn\n",
-             static_cast<double>(info.model_bytes) / (1 << 20), info.triangles);
-  if (!info.drawn.empty()) fmt::print("\ndrawn ({})\n", info.drawn.size());
-  for (const DrawnOption& d : info.drawn) fmt::print("  {} = {}\n", d.option, d.value);
-  if (!info.regions.empty()) fmt::print("\nregions ({})\n", info.regions.size());
+  say("{} positions, {} velocities, {} controls; time step {} s; mass {:.3f} kg\n", info.nq,
+      info.nv, info.nu, info.timestep, info.mass);
+  say("{:.2f} MiB of model, {} triangles drawn\n",
+      static_cast<double>(info.model_bytes) / (1 << 20), info.triangles);
+  if (!info.drawn.empty()) say("\ndrawn ({})\n", info.drawn.size());
+  for (const DrawnOption& d : info.drawn) say("  {} = {}\n", d.option, d.value);
+  if (!info.regions.empty()) say("\nregions ({})\n", info.regions.size());
   for (const Region& r : info.regions) {
-    fmt::print("  {:<32} {}: {:.1f} x {:.1f} m around ({:.1f}, {:.1f}), floor at {:.2f} m\n",
-               r.name, r.label, r.high.x - r.low.x, r.high.y - r.low.y, (r.low.x + r.high.x) / 2,
-               (r.low.y + r.high.y) / 2, r.low.z);
+    say("  {:<32} {}: {:.1f} x {:.1f} m around ({:.1f}, {:.1f}), floor at {:.2f} m\n", r.name,
+        r.label, r.high.x - r.low.x, r.high.y - r.low.y, (r.low.x + r.high.x) / 2,
+        (r.low.y + r.high.y) / 2, r.low.z);
   }
   for (const auto& [title, elements] : sections) {
     if (elements->empty()) continue;
-    fmt::print("\n{} ({})\n", title, elements->size());
+    say("\n{} ({})\n", title, elements->size());
     for (const NamedElement& element : *elements) {
-      fmt::print("  {:<32} {}\n", element.name.empty() ? "(unnamed)" : element.name,
-                 element.detail);
+      say("  {:<32} {}\n", element.name.empty() ? "(unnamed)" : element.name, element.detail);
     }
   }
   for (const auto& [title, errors] :
        {std::pair("notes", &info.notes), std::pair("not supported", &info.unsupported),
         std::pair("not drawn unless asked for", &not_drawn.hidden)}) {
-    if (!errors->empty()) fmt::print("\n{} ({})\n", title, errors->size());
-    for (const Error& error : *errors) fmt::print("  {}\n", error.to_string());
+    if (!errors->empty()) say("\n{} ({})\n", title, errors->size());
+    for (const Error& error : *errors) say("  {}\n", error.to_string());
   }
   // MuJoCo's own remarks tell of what it leaves out.
   const bool is_ignored = std::ranges::any_of(
       info.notes, [](const Error& note) { return note.message.starts_with("MuJoCo: "); });
   if (info.unsupported.empty() && not_drawn.hidden.empty() && !is_ignored)
-    fmt::print("\neverything in the file is simulated and drawn\n");
+    say("\neverything in the file is simulated and drawn\n");
 }
 
 nlohmann::ordered_json pose_json(const Pose& X) {
@@ -140,25 +140,24 @@ void print_streams_json(const World& world) {
 
 void print_streams(const World& world) {
   const std::vector<BodyInfo> bodies = world.bodies();
-  fmt::print("says\n  {:<10} {:<32} {:<24} {:<12} {}\n", "kind", "name", "on body", "rate",
-             "outputs");
+  say("says\n  {:<10} {:<32} {:<24} {:<12} {}\n", "kind", "name", "on body", "rate", "outputs");
   for (const StreamInfo& stream : world.streams()) {
     const std::string& parent = bodies[static_cast<size_t>(stream.parent.id)].name;
-    fmt::print("  {:<10} {:<32} {:<24} {:<12} {}\n", to_string(stream.kind), stream.name,
-               parent.empty() ? "world" : parent,
-               stream.rate.num == 0 ? "every step" : fmt::format("{:g} Hz", stream.rate.value()),
-               stream.outputs.size() > 6
-                   ? fmt::format("{} … ({})",
-                                 fmt::join(stream.outputs.begin(), stream.outputs.begin() + 5, " "),
-                                 stream.outputs.size())
-                   : fmt::format("{}", fmt::join(stream.outputs, " ")));
+    say("  {:<10} {:<32} {:<24} {:<12} {}\n", to_string(stream.kind), stream.name,
+        parent.empty() ? "world" : parent,
+        stream.rate.num == 0 ? "every step" : fmt::format("{:g} Hz", stream.rate.value()),
+        stream.outputs.size() > 6
+            ? fmt::format("{} … ({})",
+                          fmt::join(stream.outputs.begin(), stream.outputs.begin() + 5, " "),
+                          stream.outputs.size())
+            : fmt::format("{}", fmt::join(stream.outputs, " ")));
   }
-  fmt::print("\nhears\n");
+  say("\nhears\n");
   for (const InputInfo& input : world.inputs())
-    fmt::print("  {:<10} {:<32} {}\n", to_string(input.kind), input.name,
-               input.elements.empty() || input.elements.size() > 6
-                   ? fmt::format("{} values", input.count)
-                   : fmt::format("{}", fmt::join(input.elements, " ")));
+    say("  {:<10} {:<32} {}\n", to_string(input.kind), input.name,
+        input.elements.empty() || input.elements.size() > 6
+            ? fmt::format("{} values", input.count)
+            : fmt::format("{}", fmt::join(input.elements, " ")));
 }
 
 int report_metrics(const World& world, const Globals& globals) {
@@ -172,8 +171,7 @@ int report_metrics(const World& world, const Globals& globals) {
                     {"robot", metric.robot},
                     {"declared", metric.declared}});
     if (!globals.json)
-      fmt::print("{:<40} {:<8} {}\n", metric.name, metric.unit,
-                 metric.declared ? "declared" : "built in");
+      say("{:<40} {:<8} {}\n", metric.name, metric.unit, metric.declared ? "declared" : "built in");
   }
   if (globals.json) std::printf("%s\n", json_text(json).c_str());
   return 0;

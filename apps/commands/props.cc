@@ -8,6 +8,7 @@
 #include "command.h"
 #include "gloam/scene.h"
 #include "json_text.h"
+#include "print.h"
 
 namespace gloam::cli {
 namespace {
@@ -24,16 +25,16 @@ int list_props(const Globals& globals) {
                       {"size", {p.size.x, p.size.y, p.size.z}},
                       {"mass", p.mass},
                       {"loose", p.loose}});
-    fmt::print("{}\n", json_text(json));
+    say("{}\n", json_text(json));
     return 0;
   }
   size_t width = 4;
   for (const PropInfo& p : props) width = std::max(width, p.kind.size());
-  fmt::print("{:{}}  {:>18}  {:>8}  what\n", "kind", width, "size [m]", "mass");
+  say("{:{}}  {:>18}  {:>8}  what\n", "kind", width, "size [m]", "mass");
   for (const PropInfo& p : props)
-    fmt::print("{:{}}  {:>18}  {:>5.{}f} kg  {}{}\n", p.kind, width,
-               fmt::format("{:.2f} {:.2f} {:.2f}", p.size.x, p.size.y, p.size.z), p.mass,
-               p.mass < 10 ? 2 : 0, p.text, p.loose ? " (loose)" : "");
+    say("{:{}}  {:>18}  {:>5.{}f} kg  {}{}\n", p.kind, width,
+        fmt::format("{:.2f} {:.2f} {:.2f}", p.size.x, p.size.y, p.size.z), p.mass,
+        p.mass < 10 ? 2 : 0, p.text, p.loose ? " (loose)" : "");
   return 0;
 }
 

@@ -9,6 +9,7 @@
 #include "command.h"
 #include "gloam/log.h"
 #include "json_text.h"
+#include "print.h"
 
 namespace gloam::cli {
 namespace {
@@ -33,9 +34,9 @@ int recover(const RecoverCommand& command, const Globals& globals) {
                                          {"damage", done->damage}};
     std::printf("%s\n", json_text(json).c_str());
   } else {
-    fmt::print("{}: {} messages kept, {} known to be lost, {} bytes not read\n", to.string(),
-               done->messages, done->messages_lost, done->bytes_lost);
-    for (const std::string& damage : done->damage) fmt::print("  {}\n", damage);
+    say("{}: {} messages kept, {} known to be lost, {} bytes not read\n", to.string(),
+        done->messages, done->messages_lost, done->bytes_lost);
+    for (const std::string& damage : done->damage) say("  {}\n", damage);
   }
   return done->messages_lost > 0 || done->bytes_lost > 0 ? 3 : 0;
 }

@@ -8,6 +8,7 @@
 
 #include "gloam/outputs.h"
 #include "json_text.h"
+#include "print.h"
 #include "run_options.h"
 
 namespace gloam::cli {
@@ -76,7 +77,7 @@ int render(const RenderCommand& command_line, const Globals& globals) {
       if (globals.json)
         json.push_back({{"camera", still.camera}, {"file", file.string()}});
       else
-        std::printf("%s\n", file.string().c_str());
+        say("{}\n", file.string());
     }
   }
   if (globals.json) std::printf("%s\n", json_text(json).c_str());

@@ -13,6 +13,7 @@
 #include "json_text.h"
 #include "live.h"
 #include "outputs.h"
+#include "print.h"
 #include "report.h"
 #include "run_options.h"
 
@@ -74,7 +75,7 @@ int record_variants(const ReplayCommand& command, LogReplay replay, const Global
     std::printf("%s\n", json_text(json).c_str());
   } else {
     for (const ReplayVariant& v : *variants)
-      fmt::print("{}  seed {}{}\n", v.out.string(), v.seed, v.was_done ? "  (done before)" : "");
+      say("{}  seed {}{}\n", v.out.string(), v.seed, v.was_done ? "  (done before)" : "");
   }
   return 0;
 }
@@ -120,12 +121,12 @@ int replay(const ReplayCommand& command, const Globals& globals) {
         {"step", found->step},           {"where", found->where}, {"notes", found->notes}};
     std::printf("%s\n", json_text(json).c_str());
   } else {
-    fmt::print("{} of {} steps differ ({} states compared in {} run{})\n", found->differing,
-               found->steps, found->states, found->runs, found->runs == 1 ? "" : "s");
+    say("{} of {} steps differ ({} states compared in {} run{})\n", found->differing, found->steps,
+        found->states, found->runs, found->runs == 1 ? "" : "s");
     if (!found->is_equal())
-      fmt::print("run {}: equal up to step {}, not at step {}: {}\n", found->run, found->equal_step,
-                 found->step, found->where);
-    for (const std::string& note : found->notes) fmt::print("note: {}\n", note);
+      say("run {}: equal up to step {}, not at step {}: {}\n", found->run, found->equal_step,
+          found->step, found->where);
+    for (const std::string& note : found->notes) say("note: {}\n", note);
   }
   return found->is_equal() && found->notes.empty() ? 0 : found->is_equal() ? 3 : 1;
 }

@@ -6,6 +6,7 @@
 #include "command.h"
 #include "gloam/report.h"
 #include "json_text.h"
+#include "print.h"
 
 namespace gloam::cli {
 namespace {
@@ -22,8 +23,7 @@ int write_page(const ReportCommand& command, const Globals& globals) {
   request.out = command.out;
   const auto outcome = write_report(request);
   if (!outcome.ok()) return fail(outcome.error());
-  for (const Error& error : outcome->left_out)
-    std::fprintf(stderr, "gloam: left out: %s\n", error.to_string().c_str());
+  for (const Error& error : outcome->left_out) tell("gloam: left out: {}\n", error.to_string());
   if (globals.json) {
     nlohmann::ordered_json json = {{"out", request.out.string()},
                                    {"runs", outcome->runs},
@@ -33,9 +33,9 @@ int write_page(const ReportCommand& command, const Globals& globals) {
     for (const Error& error : outcome->left_out) json["left_out"].push_back(error.to_string());
     std::printf("%s\n", json_text(json).c_str());
   } else {
-    std::printf("%s: %zu run%s, %d pictures, %.1f MB\n", request.out.string().c_str(),
-                outcome->runs, outcome->runs == 1 ? "" : "s", outcome->pictures,
-                1e-6 * static_cast<double>(outcome->bytes));
+    say("{}: {} run{}, {} pictures, {:.1f} MB\n", request.out.string(), outcome->runs,
+        outcome->runs == 1 ? "" : "s", outcome->pictures,
+        1e-6 * static_cast<double>(outcome->bytes));
   }
   return outcome->left_out.empty() ? 0 : Error{ErrorKind::kPartial, ""}.exit_code();
 }

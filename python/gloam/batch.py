@@ -62,16 +62,16 @@ def generate(kind: str, folder: PathLike = ".", **parameters: Any) -> Scene:
     return Scene.from_dict({"environment": {kind: parameters}}, folder)
 
 
-def convert(mesh: PathLike, progress: ProgressLike = None) -> dict[str, Any]:
-    """Colliders, volume, mass of a mesh as an [[object]] gets them, and how near they are to it."""
+def convert(mesh: PathLike, progress: ProgressLike = None, root: PathLike = "", strict: bool = False) -> dict[str, Any]:
+    """Colliders, volume, mass of a mesh as an [[object]] gets them, and how near they are to it. `root`, `strict`: as of Scene."""
     with watch(progress, f"converting {Path(mesh).name}") as told:
-        return dict(_core.convert_object(Path(mesh), told))
+        return dict(_core.convert_object(Path(mesh), told, os.fspath(root), strict))
 
 
-def check(model: PathLike) -> dict[str, Any]:
+def check(model: PathLike, root: PathLike = "", strict: bool = False) -> dict[str, Any]:
     """Compares a model or scene with what stock MuJoCo makes of it, and its export with itself: "passed", and the fields that differ."""
     with tempfile.TemporaryDirectory() as folder:
-        return dict(_core.check_model(Path(model), Path(folder)))
+        return dict(_core.check_model(Path(model), Path(folder), os.fspath(root), strict))
 
 
 def _trajectory(source: Any, topic: str | None) -> Any:

@@ -5,10 +5,13 @@
 #include <deque>
 #include <memory>
 #include <mutex>
+#include <new>
+#include <system_error>
 #include <thread>
 #include <utility>
 
 #include "base/cache.h"
+#include "base/log.h"
 
 namespace gloam {
 namespace {
@@ -27,11 +30,16 @@ struct CacheWrite {
   Clock::time_point due;
 };
 
+// Without memory there is no entry: the program needs none.
 void write(const CacheWrite& job) {
-  std::vector<uint8_t> entry = job.make();
-  if (entry.empty()) return;
-  seal_cache_entry(job.magic, &entry);
-  keep_in_cache(job.path, entry);
+  try {
+    std::vector<uint8_t> entry = job.make();
+    if (entry.empty()) return;
+    seal_cache_entry(job.magic, &entry);
+    keep_in_cache(job.path, entry);
+  } catch (const std::bad_alloc&) {
+    log_debug("no memory to keep {} in the cache", job.path.string());
+  }
 }
 
 class CacheWriter {
@@ -51,9 +59,10 @@ class CacheWriter {
       if (held_ + job.held <= kMostHeld) {
         held_ += job.held;
         jobs_.push_back(std::move(job));
-        if (!thread_.joinable()) thread_ = std::thread([this] { run(); });
-        changed_.notify_all();
-        return;
+        if (start_thread()) return;
+        held_ -= jobs_.back().held;
+        job = std::move(jobs_.back());
+        jobs_.pop_back();
       }
     }
     write(job);
@@ -68,6 +77,17 @@ class CacheWriter {
   }
 
  private:
+  /// False: there is no room for its stack, so that nobody would ever write.
+  bool start_thread() {
+    try {
+      if (!thread_.joinable()) thread_ = std::thread([this] { run(); });
+    } catch (const std::system_error&) {
+      return false;
+    }
+    changed_.notify_all();
+    return true;
+  }
+
   void run() {
     std::unique_lock lock(mutex_);
     const auto is_hurried = [this] { return ends_ || waiting_ > 0; };

@@ -5,6 +5,8 @@
 
 #include <memory>
 
+#include "gloam/text.h"
+
 namespace gloam {
 namespace {
 
@@ -40,7 +42,7 @@ spdlog::logger& logger() {
 void set_log_level(LogLevel level) { logger().set_level(to_spdlog(level)); }
 
 void log_message(LogLevel level, std::string_view text) {
-  logger().log(to_spdlog(level), "{}", text);
+  logger().log(to_spdlog(level), "{}", printable(text, "\n"));
 }
 
 }  // namespace gloam

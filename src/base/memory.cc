@@ -4,6 +4,7 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include <cstring>
 #include <fstream>
 #include <sstream>
 
@@ -87,6 +88,16 @@ MemoryRoom memory_room(const fs::path& root) {
   bound_by_groups(root, &room);
   bound_by_own_limits(root, &room);
   return room;
+}
+
+void end_out_of_memory(const char* who) {
+  const auto put = [](const char* text) {
+    [[maybe_unused]] const auto written = ::write(STDERR_FILENO, text, std::strlen(text));
+  };
+  put("gloam: error: out of memory");
+  put(who);
+  put(" (lower the resolution or the size of the scene)\n");
+  ::_exit(1);
 }
 
 Status check_memory(uint64_t bytes, const std::string& what, const std::string& hint) {

@@ -20,6 +20,10 @@ struct MemoryRoom {
 /// `root`: where proc/ and sys/ are.
 MemoryRoom memory_room(const std::filesystem::path& root = "/");
 
+/// Ends the process: "out of memory" on stderr, exit code 1, for where no value can tell of it.
+/// `who`: "" or ", in MuJoCo". Takes none itself; may be called in a signal's handler.
+[[noreturn]] void end_out_of_memory(const char* who);
+
 /// Error (kInput) naming the need and the room if `bytes` are more than there is room for. `what`
 /// needs them; `hint`: how to need less.
 Status check_memory(uint64_t bytes, const std::string& what, const std::string& hint);

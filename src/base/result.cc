@@ -2,18 +2,20 @@
 
 #include <fmt/format.h>
 
+#include "gloam/text.h"
+
 namespace gloam {
 
 std::string Error::to_string() const {
   std::string text;
   if (!loc.file.empty()) {
-    text = loc.file;
+    text = printable(loc.file);
     if (loc.line > 0) text += fmt::format(":{}", loc.line);
     if (loc.line > 0 && loc.column > 0) text += fmt::format(":{}", loc.column);
     text += ": ";
   }
-  text += message;
-  if (!hint.empty()) text += fmt::format(" ({})", hint);
+  text += printable(message);
+  if (!hint.empty()) text += fmt::format(" ({})", printable(hint));
   return text;
 }
 

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <vector>
 
+#include "gloam/text.h"
+
 namespace gloam {
 namespace {
 
@@ -102,6 +104,52 @@ std::string as_utf8(std::string_view text) {
   while (!text.empty()) {
     const size_t length = utf8_length(text);
     out += length == 0 ? "\uFFFD" : text.substr(0, length);
+    text.remove_prefix(std::max<size_t>(length, 1));
+  }
+  return out;
+}
+
+namespace {
+
+/// Code point of the character at the start of `text`, of `length` bytes (RFC 3629).
+uint32_t code_point(std::string_view text, size_t length) {
+  const auto byte = [&](size_t i) { return static_cast<uint32_t>(static_cast<uint8_t>(text[i])); };
+  if (length == 1) return byte(0);
+  uint32_t code = byte(0) & (0xFFU >> (length + 1));
+  for (size_t i = 1; i < length; ++i) code = code << 6 | (byte(i) & 0x3F);
+  return code;
+}
+
+/// Does a terminal obey it, or does it turn the order of what is read? (Unicode categories Cc, Zl,
+/// Zp and the property Bidi_Control)
+bool is_obeyed(uint32_t c) {
+  return c < 0x20 || (c >= 0x7F && c < 0xA0) || c == 0x61C || c == 0x200E || c == 0x200F ||
+         (c >= 0x2028 && c <= 0x202E) || (c >= 0x2066 && c <= 0x2069);
+}
+
+std::string escaped(uint32_t c) {
+  if (c == '\n') return "\\n";
+  if (c == '\r') return "\\r";
+  if (c == '\t') return "\\t";
+  return c < 0x20 ? fmt::format("\\x{:02x}", c) : fmt::format("\\u{:04x}", c);
+}
+
+}  // namespace
+
+std::string printable(std::string_view text, std::string_view kept) {
+  std::string out;
+  out.reserve(text.size());
+  while (!text.empty()) {
+    const size_t length = utf8_length(text);
+    const uint32_t code = length > 0 ? code_point(text, length) : 0;
+    if (length == 0) {
+      out += fmt::format("\\x{:02x}", static_cast<uint8_t>(text.front()));
+    } else if (is_obeyed(code) &&
+               (length > 1 || kept.find(text.front()) == std::string_view::npos)) {
+      out += escaped(code);
+    } else {
+      out += text.substr(0, length);
+    }
     text.remove_prefix(std::max<size_t>(length, 1));
   }
   return out;

@@ -9,13 +9,15 @@
 namespace gloam::python {
 namespace {
 
-nb::dict convert(const std::filesystem::path& mesh, nb::object progress) {
+nb::dict convert(const std::filesystem::path& mesh, nb::object progress,
+                 const std::filesystem::path& root, bool strict) {
   ObjectOptions object;
   object.name = "object";
   object.file = mesh;
+  const FileAccess access{.root = root, .strict = strict};
   const ObjectReport report = with_progress(
       std::move(progress),
-      [&](const ProgressCallback& callback) { return convert_object(object, {}, callback); });
+      [&](const ProgressCallback& callback) { return convert_object(object, access, callback); });
   nb::dict made;
   made["colliders"] = report.colliders;
   made["triangles"] = report.triangles;
@@ -30,8 +32,10 @@ nb::dict convert(const std::filesystem::path& mesh, nb::object progress) {
   return made;
 }
 
-nb::dict check_file(const std::filesystem::path& file, const std::filesystem::path& folder) {
-  const ModelCheck result = without_gil([&] { return check_model(file, {}, folder); });
+nb::dict check_file(const std::filesystem::path& file, const std::filesystem::path& folder,
+                    const std::filesystem::path& root, bool strict) {
+  const FileAccess access{.root = root, .strict = strict};
+  const ModelCheck result = without_gil([&] { return check_model(file, access, folder); });
   check(result.status);
   nb::dict made;
   made["passed"] = result.passed();
@@ -109,8 +113,10 @@ void bind_tools(nb::module_& m) {
       .def("__len__", &Trajectory::size);
   m.def("evaluate", &evaluate, nb::arg("reference"), nb::arg("estimate"),
         nb::arg("alignment") = "none", nb::arg("max_difference") = 0.01, nb::arg("delta") = 1.0);
-  m.def("convert_object", &convert, nb::arg("mesh"), nb::arg("progress").none() = nb::none());
-  m.def("check_model", &check_file, nb::arg("file"), nb::arg("folder"));
+  m.def("convert_object", &convert, nb::arg("mesh"), nb::arg("progress").none() = nb::none(),
+        nb::arg("root") = std::filesystem::path(), nb::arg("strict") = false);
+  m.def("check_model", &check_file, nb::arg("file"), nb::arg("folder"),
+        nb::arg("root") = std::filesystem::path(), nb::arg("strict") = false);
   m.def(
       "write_report",
       [](const std::vector<std::filesystem::path>& runs, const std::filesystem::path& out,

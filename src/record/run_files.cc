@@ -1,6 +1,7 @@
 #include "record/run_files.h"
 
 #include <nlohmann/json.hpp>
+#include <string_view>
 
 #include "geometry/lens.h"
 
@@ -18,6 +19,13 @@ Json object(const Pairs& pairs) {
   Json out = Json::object();
   for (const auto& [name, value] : pairs) out[name] = value;
   return out;
+}
+
+/// A recording error without what the state says already.
+std::string cause_of(std::string_view error) {
+  constexpr std::string_view kStopped = "recording stopped: ";
+  if (error.starts_with(kStopped)) error.remove_prefix(kStopped.size());
+  return std::string(error);
 }
 
 void add_episodes(const RunOutcome& outcome, Json* metrics) {
@@ -42,8 +50,12 @@ std::string summary_json(const RunInfo& info, const RunOutcome* outcome,
   Json out;
   out["format"] = "gloam-run 1";
   out["title"] = info.title;
-  out["state"] = outcome == nullptr ? "recording" : "finished";
-  out["exit_reason"] = outcome == nullptr ? Json() : Json(outcome->exit_reason);
+  const std::string cause = cause_of(error);
+  out["state"] = outcome == nullptr ? "recording"
+                 : cause.empty()    ? "finished"
+                                    : "stopped: " + cause;
+  const bool is_cut = outcome != nullptr && outcome->exit_reason == "completed" && !cause.empty();
+  out["exit_reason"] = outcome == nullptr ? Json() : Json(is_cut ? cause : outcome->exit_reason);
   out["recording_error"] = error.empty() ? Json() : Json(error);
   out["versions"] = object(info.versions);
   out["scene"] = {{"file", info.scene_file}, {"hash", info.scene_hash}};

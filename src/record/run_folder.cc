@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/files.h"
+#include "base/nesting.h"
 
 namespace gloam {
 namespace fs = std::filesystem;
@@ -26,7 +27,7 @@ std::string in_lower_case(std::string text) {
 /// that are not plain names are not trusted.
 Status remove_recording(const fs::path& folder) {
   GLOAM_TRY(const std::string text, read_text_file(folder / kSummaryName, 16 << 20));
-  const nlohmann::json summary = nlohmann::json::parse(text, nullptr, false);
+  const nlohmann::json summary = parse_bounded<nlohmann::json>(text);
   const auto entries = summary.is_object() ? summary.find("entries") : summary.end();
   if (!summary.is_object() || summary.value("format", nlohmann::json()) != "gloam-run 1" ||
       entries == summary.end() || !entries->is_array())

@@ -182,7 +182,9 @@ std::string runs_section(const ReportContent& content) {
     for (const auto* texts : {&run.settings, &run.drawn})
       for (const auto& [name, value] : *texts)
         settings += (settings.empty() ? "" : ", ") + html_text(name + " " + value);
-    const std::string ended = run.state == "finished" ? run.exit_reason : "not finished";
+    const std::string ended = run.state == "finished"            ? run.exit_reason
+                              : run.state.starts_with("stopped") ? run.state
+                                                                 : "not finished";
     out += fmt::format(
         "<tr><td>{}</td><td>{}<br><code class=\"soft\">{}</code></td><td class=\"n\">{}</td><td "
         "class=\"n\">{}</td><td class=\"n\">{}</td><td><code>{}</code></td><td{}>{}</td><td "

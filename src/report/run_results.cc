@@ -11,6 +11,7 @@
 
 #include "base/files.h"
 #include "base/hash.h"
+#include "base/nesting.h"
 #include "record/run_folder.h"
 
 namespace gloam {
@@ -124,7 +125,7 @@ Result<RunResults> read_run_results(const fs::path& folder, std::vector<Error>* 
                  {folder.string(), 0, 0},
                  "gloam run FILE --out FOLDER makes one; of a log: gloam replay LOG --out FOLDER"};
   GLOAM_TRY(const std::string text, read_text_file(summary, kMostSummaryBytes));
-  const Json json = Json::parse(text, nullptr, false);
+  const Json json = parse_bounded<Json>(text);
   if (!json.is_object() || !text_of(json, "format").starts_with("gloam-run "))
     return Error{ErrorKind::kInput, "is no summary of a run of Gloam's", {summary.string(), 0, 0}};
   RunResults run;

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <numeric>
@@ -52,7 +53,7 @@ Result<std::unique_ptr<LiveSimulation>> LiveSimulation::create(const World& worl
   SimulatorOptions core;
   core.seed = options.seed;
   if (options.timestep != 0) core.timestep = options.timestep;
-  core.pace = options.pace;
+  core.pace = live->pace_ = options.pace;
   core.speed = options.speed;
   core.make_data = options.make_data;
   core.command_capacity += static_cast<int>(std::min(how.commands, size_t{1} << 19));
@@ -136,7 +137,7 @@ Result<std::unique_ptr<ControlLease>> LiveSimulation::claim(Robot robot) {
 void LiveSimulation::restart_speed_clock() {
   const std::lock_guard lock(clock_mutex_);
   clock_wall_ = wall_seconds();
-  clock_sim_ = simulator_->latest().time();
+  clock_steps_ = simulator_->counters().steps;
 }
 
 Status LiveSimulation::run_until(int64_t step) {
@@ -177,6 +178,7 @@ Status LiveSimulation::step(int64_t n) {
 }
 
 void LiveSimulation::set_pace(Pace pace, double speed) {
+  pace_ = pace;
   restart_speed_clock();
   simulator_->set_pace(pace, speed);
 }
@@ -186,11 +188,21 @@ Status LiveSimulation::post(std::span<const Command> commands) {
   return simulator_->post(commands);
 }
 
+// While it runs in real time, clients that reset without end would have it do nothing else: what
+// comes within a moment of a reset is the same one.
+bool LiveSimulation::repeats_a_reset() {
+  constexpr double kMoment = 0.01;  // [s]
+  const std::lock_guard lock(clock_mutex_);
+  const double now = wall_seconds();
+  if (pace_ == Pace::kRealTime && !paused_ && now - last_reset_ < kMoment) return true;
+  last_reset_ = now;
+  return false;
+}
+
 Status LiveSimulation::post(const Command& command) {
   if (std::holds_alternative<ResetSim>(command.what) && !simulator_->is_on_sim_thread()) {
-    const Status status = simulator_->reset();  // works after a failure, too
-    restart_speed_clock();
-    return status;
+    if (simulator_->status().ok() && repeats_a_reset()) return {};
+    return simulator_->reset();  // works after a failure, too
   }
   return post(std::span<const Command>(&command, 1));
 }
@@ -207,7 +219,10 @@ SimulationStats LiveSimulation::stats() const {
   stats.warnings = std::accumulate(counters.warnings.begin(), counters.warnings.end(), int64_t{0});
   const std::lock_guard lock(clock_mutex_);
   const double wall = wall_seconds() - clock_wall_;
-  if (!paused_ && wall > 0) stats.realtime_factor = (stats.time - clock_sim_) / wall;
+  // Steps are counted, since a reset takes the time back.
+  const auto steps = static_cast<double>(counters.steps - clock_steps_);
+  if (!paused_ && wall > 0)
+    stats.realtime_factor = std::max(steps, 0.0) * simulator_->timestep().value() / wall;
   return stats;
 }
 

@@ -107,6 +107,7 @@ class LiveSimulation final : public Simulation {
   LiveSimulation(uint64_t seed, bool required_meters, Metering metering)
       : seed_(seed), metering_(metering), meters_(seed, required_meters) {}
   void restart_speed_clock();
+  bool repeats_a_reset();
   void send_latched();
   Result<std::shared_ptr<const CompiledWorld>> solve_latest(PoseFrame& poses);
 
@@ -124,7 +125,10 @@ class LiveSimulation final : public Simulation {
   std::unique_ptr<PoseSolver> solver_;  // for questions about the latest instant
   std::atomic<bool> paused_{true}, stop_requested_{false};
   mutable std::mutex clock_mutex_;
-  double clock_wall_ = 0, clock_sim_ = 0;  // times from which the real-time factor counts [s]
+  double clock_wall_ = 0;    // time from which the real-time factor counts [s]
+  int64_t clock_steps_ = 0;  // steps taken by then
+  double last_reset_ = -1;   // [s]
+  std::atomic<Pace> pace_{Pace::kFast};
 };
 
 }  // namespace gloam

@@ -18,6 +18,8 @@ constexpr milliseconds kRetry{1000};
 constexpr milliseconds kSettle{400};  // without a movement, before a picture counts as still
 constexpr int kStillPictures = 64;    // that a still picture is the mean of
 constexpr int kMeasuredPictures = 3;
+constexpr int kPreviewSamples = 4;                    // per pixel, of the first picture
+constexpr int kSmallWidth = 160, kSmallHeight = 120;  // [px] of a picture that is made at once
 constexpr const char* kFreeCamera = "free";
 
 /// Adds `next` to the message that waits, if both are moves of one kind. False: it must queue up.
@@ -38,11 +40,18 @@ bool merge(ControlMessage& waiting, const ControlMessage& next) {
     return true;
   }
   if (std::holds_alternative<DragMoveMessage>(waiting) ||
-      std::holds_alternative<SeekMessage>(waiting)) {
+      std::holds_alternative<SeekMessage>(waiting) ||
+      std::holds_alternative<ResetMessage>(waiting)) {
     waiting = next;
     return true;
   }
   return false;
+}
+
+/// Is its first picture worth a smaller one before? A size of 0 is the camera's own.
+bool takes_long(const CameraRequest& request) {
+  const int pixels = request.width * request.height;
+  return request.render.tier == "fast" || pixels == 0 || pixels > kSmallWidth * kSmallHeight;
 }
 
 /// Pivot of a camera that sees nothing at its centre: the floor, or a step ahead [m].
@@ -307,6 +316,9 @@ Status Driver::open_stream(double scale) {
                         .height = coarse ? scaled(full_height_) : options_.height,
                         .render = options_.render};
   opened_scale_ = coarse ? scale : 1;
+  is_preview_ = publisher_.newest() == nullptr && takes_long(request);
+  if (is_preview_) make_preview(&request);
+  opened_at_ = publisher_.sequence();
   // From the first picture on where its user left it.
   if (name == kFreeCamera) request.X_WC = orbit_ ? orbit_->pose() : free_start_;
   last_attempt_ = Clock::now();
@@ -327,6 +339,27 @@ Status Driver::open_stream(double scale) {
   return {};
 }
 
+/// A picture soon, before the one that is asked for: a quarter of its width, and path traced, since
+/// the fast tier takes seconds to fill its cache before it shows anything.
+void Driver::make_preview(CameraRequest* request) const {
+  constexpr int kFraction = 4;
+  if (request->width > 0 && request->height > 0) {
+    request->width = std::max(request->width / kFraction, 1);
+    request->height = std::max(request->height / kFraction, 1);
+  } else {
+    request->width = kSmallWidth;
+    request->height = kSmallHeight;
+    for (const CameraOptions& camera : simulation_.world().scene().cameras) {
+      if (camera.name != request->camera) continue;
+      request->width = std::max(camera.width / kFraction, 1);
+      request->height = std::max(camera.height / kFraction, 1);
+    }
+  }
+  if (request->render.tier == "fast") request->render.tier = "path";
+  request->render.error.reset();
+  request->render.spp = std::min(request->render.samples(), kPreviewSamples);
+}
+
 bool Driver::is_still() const {
   return simulation_.paused() && !drag_ && Clock::now() - last_moved_ > kSettle;
 }
@@ -339,23 +372,32 @@ void Driver::adapt_resolution() {
     measured_from_ = Clock::now();
     dropped_before_ = stream_->dropped();
   }
+  const auto frame = publisher_.newest();
+  if (!frame || frame->camera != camera_ || publisher_.sequence() == opened_at_) return;
+  if (is_preview_) {
+    if (drag_) do_message(drag_->client, DragEndMessage{});
+    reopen(full_width_ > 0 ? scale_.scale() : 1);
+    return;
+  }
   if (full_width_ == 0) {
-    const auto frame = publisher_.newest();
-    if (!frame || frame->camera != camera_) return;
     full_width_ = frame->intrinsics.width;
     full_height_ = frame->intrinsics.height;
   }
   const double wanted = is_still() ? 1 : scale_.scale();
   if (std::abs(wanted - opened_scale_) < 1e-9) return;
-  if (camera_ == kFreeCamera && !orbit_) free_start_ = stream_->pose();
   const double ratio = wanted / opened_scale_;
-  stream_.reset();
-  refreshed_at_.reset();
-  // A failure is in the report, and keep_camera() tries again.
-  if (open_stream(wanted).ok() && drag_) {
+  if (reopen(wanted) && drag_) {
     drag_->u *= ratio;
     drag_->v *= ratio;
   }
+}
+
+/// A failure is in the report, and keep_camera() tries again.
+bool Driver::reopen(double scale) {
+  if (camera_ == kFreeCamera && !orbit_) free_start_ = stream_->pose();
+  stream_.reset();
+  refreshed_at_.reset();
+  return open_stream(scale).ok();
 }
 
 /// Tells scale_ how long pictures take: between them while the simulation runs, and from the
@@ -367,6 +409,7 @@ void Driver::measure_pictures(uint64_t pictures) {
     const double seconds = std::chrono::duration<double>(now - last_refresh_).count();
     return scale_.add(seconds, seconds <= PictureScale::kTarget);
   }
+  if (is_preview_) return;
   measured_ += static_cast<int>(pictures);
   if (measured_ < kMeasuredPictures) return;
   const double seconds = std::chrono::duration<double>(now - measured_from_).count() / measured_;
@@ -391,7 +434,10 @@ void Driver::keep_camera() {
     wanted = clients_ > 0 || now - last_client_ < kCameraLinger;
     if (stream_) report_.dropped = stream_->dropped();
     // Pictures that nobody was there to see are not encoded.
-    picture_is_old_ |= std::exchange(someone_came_, false);
+    if (std::exchange(someone_came_, false)) {
+      picture_is_old_ = true;
+      publisher_.repeat();  // a new one may take a while
+    }
   }
   if (!wanted && stream_) close_camera();
   // A failure is in the report, where every client sees it.

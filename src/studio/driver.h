@@ -91,6 +91,8 @@ class Driver {
   void follow_pictures();
   void refresh_when_due();
   Status open_stream(double scale);
+  void make_preview(CameraRequest* request) const;
+  bool reopen(double scale);
   void measure_pictures(uint64_t pictures);
   void adapt_resolution();
   bool is_still() const;
@@ -127,6 +129,8 @@ class Driver {
   uint64_t seen_sequence_ = 0;
   PictureScale scale_;                    // of pictures while something moves
   double opened_scale_ = 1;               // of the open stream
+  bool is_preview_ = false;               // the open stream is the one before any picture
+  uint64_t opened_at_ = 0;                // sequence of the newest frame when it was opened
   int full_width_ = 0, full_height_ = 0;  // [px]; 0 = not known before the first picture
   int added_ = 0;               // refreshes since anything changed: samples of a still picture
   int measured_ = 0;            // pictures since measured_from_

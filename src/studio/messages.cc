@@ -3,6 +3,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "web/client_json.h"
+
 namespace gloam::studio {
 namespace {
 
@@ -88,7 +90,7 @@ std::string to_text(const json& message) {
 }  // namespace
 
 Result<ControlMessage> parse_message(std::string_view text) {
-  const json object = json::parse(text, nullptr, false);
+  const json object = web::parse_client_json(text);
   if (object.is_discarded()) return wrong("the message is not JSON");
   const auto found = object.is_object() ? object.find("type") : object.end();
   if (found == object.end() || !found->is_string())

@@ -1,5 +1,6 @@
 #include "studio/web_connection.h"
 
+#include <algorithm>
 #include <boost/asio/post.hpp>
 #include <boost/beast/http/read.hpp>
 #include <boost/beast/http/write.hpp>
@@ -43,9 +44,14 @@ void add_safety_fields(http::fields& fields) {
 WebConnection::WebConnection(net::ip::tcp::socket socket, WebShared& shared)
     : shared_(shared), stream_(std::move(socket)), last_moment_(stream_.get_executor()) {
   shared_.connections.insert(this);
+  half_open_ = shared_.half_open.enter([this] { stream_.close(); });
 }
 
 WebConnection::~WebConnection() {
+  if (half_open_ != 0)
+    shared_.half_open.leave(half_open_);
+  else
+    --shared_.admitted;
   shared_.connections.erase(this);
   if (shared_.connections.empty() && shared_.on_empty) shared_.on_empty();
 }
@@ -54,7 +60,7 @@ void WebConnection::read_request() {
   request_.emplace();
   request_->header_limit(kMaxHeader);
   // One deadline for the whole header: sending it byte by byte gains no time.
-  stream_.expires_after(shared_.options.request_time);
+  stream_.expires_after(patience());
   http::async_read_header(
       stream_, buffer_, *request_,
       [self = shared_from_this()](error_code error, size_t) { self->on_request(error); });
@@ -68,9 +74,10 @@ void WebConnection::on_request(error_code error) {
   if (error) return refuse(400, "This is not an HTTP request.");
 
   const auto& request = request_->get();
-  const web::RequestFacts facts = web::facts_of(request);
+  const web::RequestFacts facts = web::facts_of(request, shared_.port);
   const web::Verdict verdict = web::judge(facts, shared_.options.token, shared_.cookie_name);
   if (verdict.status != 200) return refuse(static_cast<unsigned>(verdict.status), verdict.reason);
+  if (!let_in()) return refuse(503, "This server has all the clients that it may have.");
   if (!request_->is_done()) return refuse(413, "A request here has no body.");
 
   const std::string_view path = web::target_path(facts.target);
@@ -83,6 +90,20 @@ void WebConnection::on_request(error_code error) {
                   verdict.set_cookie);
   answer(http::status::not_found, "text/plain; charset=utf-8",
          "There is nothing at this address.\n", request.keep_alive(), false);
+}
+
+/// It has shown the token. False: too many have.
+bool WebConnection::let_in() {
+  if (half_open_ == 0) return true;
+  if (shared_.admitted >= shared_.options.max_connections) return false;
+  shared_.half_open.leave(std::exchange(half_open_, 0));
+  ++shared_.admitted;
+  return true;
+}
+
+std::chrono::milliseconds WebConnection::patience() const {
+  const std::chrono::milliseconds time = shared_.options.request_time;
+  return half_open_ == 0 ? time : std::min(time, web::HalfOpen::kPatience);
 }
 
 void WebConnection::refuse(unsigned status, std::string_view reason) {
@@ -105,7 +126,7 @@ void WebConnection::answer(http::status status, std::string_view type, std::stri
   response.content_length(body.size());
   if (request_->get().method() != http::verb::head) response.body() = body;
 
-  stream_.expires_after(shared_.options.request_time);
+  stream_.expires_after(patience());
   http::async_write(stream_, response,
                     [self = shared_from_this(), keep_alive](error_code error, size_t) {
                       if (error) return;

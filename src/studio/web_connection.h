@@ -22,6 +22,7 @@
 
 #include "studio/web_server.h"
 #include "web/access.h"
+#include "web/half_open.h"
 
 namespace gloam::studio {
 
@@ -32,7 +33,10 @@ struct WebShared {
   WebOptions options;
   std::string cookie_name;
   WebEvents* events = nullptr;
+  int port = 0;
   std::set<WebConnection*> connections;
+  web::HalfOpen half_open;                    ///< connections that have not shown the token yet
+  int admitted = 0;                           ///< connections that have
   std::map<int64_t, WebConnection*> clients;  ///< those with a WebSocket
   int64_t last_client = 0;
   std::shared_ptr<const std::string> picture;  ///< the newest, for those who come later
@@ -60,6 +64,8 @@ class WebConnection : public std::enable_shared_from_this<WebConnection> {
   using Request = boost::beast::http::request_parser<boost::beast::http::empty_body>;
 
   void on_request(boost::beast::error_code error);
+  bool let_in();
+  std::chrono::milliseconds patience() const;
   void answer(boost::beast::http::status status, std::string_view type, std::string_view body,
               bool keep_alive, bool set_cookie);
   void refuse(unsigned status, std::string_view reason);
@@ -72,6 +78,7 @@ class WebConnection : public std::enable_shared_from_this<WebConnection> {
   void end();
 
   WebShared& shared_;
+  int64_t half_open_ = 0;  ///< number among those; 0 = it was let in
   boost::beast::tcp_stream stream_;
   boost::beast::flat_buffer buffer_;
   std::optional<Request> request_;

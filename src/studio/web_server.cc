@@ -34,6 +34,7 @@ class WebServer::Impl {
 
   Status listen() {
     GLOAM_TRY_STATUS(listener_.listen(shared_.options.host, shared_.options.port, "try --port 0"));
+    shared_.port = port();
     shared_.cookie_name = web::cookie_name(port());
     listener_.accept([this](tcp::socket socket) { take(std::move(socket)); });
     thread_ = std::thread([this] { run(); });
@@ -87,8 +88,6 @@ class WebServer::Impl {
   }
 
   void take(tcp::socket socket) {
-    if (shared_.connections.size() >= static_cast<size_t>(shared_.options.max_connections))
-      return web::turn_away(socket);
     std::make_shared<WebConnection>(std::move(socket), shared_)->read_request();
   }
 

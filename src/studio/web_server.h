@@ -16,9 +16,10 @@ namespace gloam::studio {
 struct WebOptions {
   std::string host = "127.0.0.1";
   int port = 0;
-  int max_connections = 32;
+  int max_connections = 32;  ///< of those that have shown the token
   std::string token;
-  std::chrono::milliseconds request_time{5000};  ///< for a whole request header, or a handshake
+  std::chrono::milliseconds request_time{5000};  ///< for a request header or a handshake; the first
+                                                 ///< has less (web::HalfOpen)
   std::chrono::milliseconds idle_time{30000};    ///< a silent WebSocket is pinged at half of it
 };
 

@@ -132,10 +132,40 @@ bool carries_token(const RequestFacts& request, std::string_view token) {
          token_in_authorization(request.authorization, token);
 }
 
+bool is_websocket_key(std::string_view key) {
+  if (key.size() != 24 || !key.ends_with("==")) return false;
+  const bool is_base64 = std::all_of(key.begin(), key.end() - 2, [](char c) {
+    return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '+' || c == '/';
+  });
+  return is_base64 && std::string_view("AQgw").find(key[21]) != std::string_view::npos;
+}
+
+std::string_view why_malformed(const RequestFacts& request) {
+  if (request.hosts != 1) return "The request must have exactly one Host field.";
+  if (!request.repeated.empty())
+    return "Host, Origin, Cookie, Authorization and the fields of a WebSocket may be there once.";
+  if (!request.websocket) return {};
+  if (request.websocket_version != "13") return "This server speaks version 13 of WebSocket.";
+  if (!is_websocket_key(request.websocket_key))
+    return "Sec-WebSocket-Key must be 16 bytes in base64.";
+  return {};
+}
+
+bool has_own_port(const RequestFacts& request) {
+  const std::string_view host = request.host, name = host_name(host);
+  if (name.empty() || name.size() == host.size()) return !name.empty();
+  const std::string_view digits = host.substr(name.size() + 1);
+  int port = -1;
+  std::from_chars(digits.data(), digits.data() + digits.size(), port);
+  return port == request.port;
+}
+
 Verdict judge(const RequestFacts& request, std::string_view token, std::string_view cookie_name) {
-  if (request.hosts != 1) return {400, "The request must have exactly one Host field."};
+  if (const std::string_view why = why_malformed(request); !why.empty()) return {400, why};
   if (!is_loopback_name(host_name(request.host)))
     return {403, "This server answers to loopback names only, such as 127.0.0.1 or localhost."};
+  if (!has_own_port(request))
+    return {403, "The port in Host is not this server's (a tunnel must keep it)."};
   if (!request.origin.empty()) {
     constexpr std::string_view kScheme = "http://";
     if (request.origin.substr(0, kScheme.size()) != kScheme ||

@@ -23,9 +23,19 @@ bool is_loopback_name(std::string_view name);
 struct RequestFacts {
   std::string_view method, target;
   std::string_view host, origin, sec_fetch_site, cookie, authorization;
-  int hosts = 0;  ///< how many Host fields there are
+  std::string_view websocket_key, websocket_version;
+  std::string_view repeated;  ///< name of a field that decides and is there twice; "" = none
+  int hosts = 0;              ///< how many Host fields there are
+  int port = 0;               ///< the server's own
   bool websocket = false;
 };
+
+/// Reason to refuse a request with status 400 whoever sends it: a field that decides is missing or
+/// there twice, or the key of its WebSocket is none. Empty: there is none.
+std::string_view why_malformed(const RequestFacts& request);
+
+/// Is the port in Host the server's own? A Host without a port tells nothing.
+bool has_own_port(const RequestFacts& request);
 
 /// Status 200 (go on), or the refusal: 400, 401, 403, 405.
 struct Verdict {
@@ -38,6 +48,9 @@ Verdict judge(const RequestFacts& request, std::string_view token, std::string_v
 /// Whether a request carries the token in its address (?token=…) or as "Authorization: token …" or
 /// "Authorization: bearer …".
 bool carries_token(const RequestFacts& request, std::string_view token);
+
+/// 16 bytes in base64 (RFC 6455, 4.2.1).
+bool is_websocket_key(std::string_view key);
 
 /// Name of a Host field without its port; empty when it is malformed.
 std::string_view host_name(std::string_view host);

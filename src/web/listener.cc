@@ -1,8 +1,6 @@
 #include "web/listener.h"
 
-#include <boost/asio/buffer.hpp>
 #include <chrono>
-#include <string_view>
 #include <utility>
 
 namespace gloam::web {
@@ -73,15 +71,6 @@ void Listener::close() {
   error_code ignored;
   acceptor_.close(ignored);
   timer_.cancel();
-}
-
-void turn_away(tcp::socket& socket) {
-  error_code ignored;
-  socket.non_blocking(true, ignored);
-  constexpr std::string_view kBusy =
-      "HTTP/1.1 503 Service Unavailable\r\nContent-Length: 0\r\nConnection: close\r\n\r\n";
-  socket.write_some(net::buffer(kBusy.data(), kBusy.size()), ignored);
-  socket.shutdown(tcp::socket::shutdown_both, ignored);
 }
 
 }  // namespace gloam::web

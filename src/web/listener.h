@@ -36,7 +36,4 @@ class Listener {
   int port_ = 0;
 };
 
-/// Answers a connection of too many: 503.
-void turn_away(boost::asio::ip::tcp::socket& socket);
-
 }  // namespace gloam::web

@@ -12,10 +12,16 @@ namespace gloam::web {
 
 inline std::string_view view(boost::beast::string_view text) { return {text.data(), text.size()}; }
 
-/// Views into the request, which must outlive them.
+/// Views into the request, which must outlive them. `port`: the server's.
 inline RequestFacts facts_of(
-    const boost::beast::http::request<boost::beast::http::empty_body>& request) {
+    const boost::beast::http::request<boost::beast::http::empty_body>& request, int port) {
   namespace http = boost::beast::http;
+  // Who reads the first of two fields and who reads the last would see two requests.
+  std::string_view repeated;
+  for (const std::string_view name :
+       {"Host", "Origin", "Cookie", "Authorization", "Sec-Fetch-Site", "Upgrade",
+        "Sec-WebSocket-Key", "Sec-WebSocket-Version", "Content-Length", "Transfer-Encoding"})
+    if (request.count(boost::beast::string_view(name.data(), name.size())) > 1) repeated = name;
   const auto field = [&](auto name) { return view(request[name]); };
   return {.method = view(request.method_string()),
           .target = view(request.target()),
@@ -24,7 +30,11 @@ inline RequestFacts facts_of(
           .sec_fetch_site = field("Sec-Fetch-Site"),
           .cookie = field(http::field::cookie),
           .authorization = field(http::field::authorization),
+          .websocket_key = field(http::field::sec_websocket_key),
+          .websocket_version = field(http::field::sec_websocket_version),
+          .repeated = repeated,
           .hosts = static_cast<int>(request.count(http::field::host)),
+          .port = port,
           .websocket = boost::beast::websocket::is_upgrade(request)};
 }
 

@@ -161,6 +161,10 @@ class Mistakes(ProgramTest):
         self.complains(2, "cache", "claer", words=["claer"])
         self.complains(2, "cache", "clear", "modles", words=["there is no cache 'modles'", "did you mean 'models'?"])
         self.complains(1, "cache", env={"GLOAM_CACHE_SIZE": "much"}, words=["GLOAM_CACHE_SIZE is 'much'", "20G"])
+        model = self.write("m.xml", PENDULUM)
+        for size in ("abc", "-1", "10 G", "1e9", "99999999999G"):  # whatever is done
+            for command in (["info", model], ["render", model, "--out", "out"]):
+                self.complains(1, *command, env={"GLOAM_CACHE_SIZE": size}, words=[f"GLOAM_CACHE_SIZE is '{size}'", "20G"])
         file = self.write("file", "no folder")
         for arguments in (["cache"], ["cache", "clear"]):
             self.complains(1, *arguments, env={"GLOAM_CACHE": str(file)}, words=[str(file), "cannot read the cache"])
@@ -404,7 +408,7 @@ class Work(ProgramTest):
 
     def test_ctrl_c_finishes_the_files(self):
         model = self.write("m.xml", PENDULUM)
-        for number in [signal.SIGINT, signal.SIGTERM]:
+        for number in [signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGXCPU]:
             out = self.folder / f"out{int(number)}"
             code, stderr = self.stopped_by(number, "run", model, "--duration", "1e6", "--out", out, "--spp", "1", "--resolution", "64x48",
                                            started=lambda: (out / "side/rgb/000003.png").exists())

@@ -47,12 +47,17 @@ class Disk(ProgramTest):
         self.assertEqual(len({line.count(",") for line in poses[:-1]}), 1, "whole rows")
         return summary
 
+    def check_stopped(self, summary, cause):
+        self.assertRegex(summary["state"], f"^stopped: .*{cause}")
+        self.assertNotEqual(summary["exit_reason"], "completed")
+        self.assertIn(cause, summary["recording_error"])
+
     def test_a_disk_that_fills_up(self):
         with small_disk(self.folder / "disk", "size=1m") as disk:
             error = self.record(disk / "out", expect=3)
             self.assertIn("No space left", error)
             self.assertIn("disk/out", error)
-            self.check_readable(disk / "out")
+            self.check_stopped(self.check_readable(disk / "out"), "No space left")
 
     def test_a_log_on_a_disk_that_fills_up(self):
         model = self.write("m.xml", PENDULUM)
@@ -84,8 +89,7 @@ class Disk(ProgramTest):
         error = self.record(self.folder / "out", expect=3, preexec_fn=limit)
         self.assertIn("File too large", error)
         summary = self.check_readable(self.folder / "out")
-        self.assertEqual(summary["state"], "finished")
-        self.assertIn("File too large", summary["recording_error"])
+        self.check_stopped(summary, "File too large")
 
 
 if __name__ == "__main__":

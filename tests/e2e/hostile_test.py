@@ -4,10 +4,11 @@ import math
 import os
 import resource
 import struct
+import subprocess
 import unittest
 import zlib
 
-from e2e.support import ROOT, ProgramTest
+from e2e.support import PROGRAM, ROOT, ProgramTest
 
 LIMIT = 4 << 30  # of address space [bytes]: far more than any of these scenes should need, less than they ask for
 SECONDS = 100  # a machine that does other things too; most take less than two
@@ -268,6 +269,96 @@ class Crowds(HostileTest):
 
     def test_a_million_lamps(self):
         self.refuses(self.lamps(1_000_000), "scene.toml", "limit")
+
+
+
+class Texts(ProgramTest):
+    """Texts that are deep, wide or meant for the terminal."""
+
+    def refuses(self, *arguments, words, code=1, **how):
+        result = self.gloam(*arguments, expect=code, timeout=SECONDS, **how)
+        errors = [line for line in result.stderr.splitlines() if "error" in line]
+        self.assertEqual(len(errors), 1, result.stderr)
+        for word in words:
+            self.assertIn(word, errors[0])
+
+    def test_that_nest_without_end(self):
+        deep = "a" + ".a" * 40_000
+        for name, text, line in [("key.toml", f"\n{deep} = 1\n", 2), ("table.toml", f"[{deep}]\n", 1), ("model.toml", f"[mujoco]\n[mujoco.{deep}]\n", 2),
+                                 ("array.toml", "a = " + "[" * 40_000, 1), ("m.xml", "<mujoco>" + "<body>" * 40_000, 1),
+                                 ("m.urdf", "<robot>" + "<link>" * 40_000, 1)]:
+            with self.subTest(name):
+                self.write(name, text)
+                self.refuses("info", name, words=[f"{name}:{line}", "nested more than"])
+        self.write("s.toml", '[[visual]]\nname = "v"\nfile = "a.dae"\n')
+        self.write("a.dae", "<COLLADA>" + "<node>" * 40_000)
+        self.refuses("render", "s.toml", words=["a.dae:1", "nested more than"])
+
+    def test_that_would_take_a_minute(self):
+        self.write("wide.xml", "<mujoco><worldbody><geom " + " ".join(f'a{i}="1"' for i in range(100_000)) + "/></worldbody></mujoco>")
+        parts = [f'<link name="{i}"/>' for i in range(2001)]
+        parts += [f'<joint name="j{i}" type="fixed"><parent link="{i}"/><child link="{i + 1}"/></joint>' for i in range(2000)]
+        self.write("chain.urdf", f'<robot name="r">{"".join(parts)}</robot>')
+        self.refuses("info", "wide.xml", words=["wide.xml:1", "more than 1000 attributes"])
+        self.refuses("info", "chain.urdf", words=["chain.urdf:1", "more than 512 deep"])
+
+    def test_that_speak_to_the_terminal(self):
+        evil = r"\u001b]0;owned\u0007\u009b31m\u202e\u007f"
+        raw = [chr(c) for c in [*range(10), *range(11, 32), *range(127, 160), 0x202E]]
+        model = self.write("m.xml", MODEL.replace("floor", evil.encode().decode("unicode_escape").replace("\a", "").replace("\x1b", "")))
+        self.write("s.toml", f'[[robot]]\nname = "r"\nfile = "m.xml"\n[[camera]]\nname = "{evil}"\nposition = [0, 0, 1]\n'
+                   f'[[light]]\nname = "{evil}"\ntype = "point"\nintensity = 1\n')
+        self.write("key.toml", f'[["{evil}"]]\na = 1\n')
+        self.write("value.toml", f'[[robot]]\nname = "r"\nfile = "{evil}.xml"\n')
+        for arguments in (["info", "s.toml"], ["info", "s.toml", "--json"], ["info", "s.toml", "--streams"], ["info", model], ["info", "key.toml"],
+                          ["info", "value.toml"], ["render", "s.toml", "--camera", "\x1b[31m"], ["info", "\x1b[2J.toml"], ["\x1b[2J"], ["info", "--\x1b[2J"]):
+            with self.subTest(arguments):
+                result = subprocess.run([str(PROGRAM), *map(str, arguments)], cwd=self.folder, capture_output=True, timeout=SECONDS,
+                                        env={**os.environ, "GLOAM_CACHE": str(self.folder / "cache")})
+                shown = (result.stdout + result.stderr).decode()
+                self.assertEqual([hex(ord(c)) for c in raw if c in shown], [], shown)
+        self.assertIn(r"\x1b]0;owned\x07\u009b31m", self.gloam("info", "key.toml", expect=1).stderr)
+
+
+class Memory(ProgramTest):
+    def test_that_ends_while_a_scene_is_read_or_drawn(self):
+        scene = ROOT / "examples" / "demo.toml"
+        for kilobytes in (300_000, 360_000, 409_600, 480_000, 560_000):
+            for command in (["info", scene], ["render", scene, "--resolution", "32x24", "--spp", "1", "--out", f"out{kilobytes}"]):
+                with self.subTest(command[0], kilobytes=kilobytes):
+                    limit = lambda size=kilobytes << 10: resource.setrlimit(resource.RLIMIT_AS, (size, size))  # noqa: E731
+                    result = subprocess.run([str(PROGRAM), "-q", *map(str, command)], cwd=self.folder, text=True, capture_output=True, timeout=SECONDS,
+                                            preexec_fn=limit, env={**os.environ, "GLOAM_CACHE": str(self.folder / f"cache{kilobytes}{command[0]}")})
+                    self.assertIn(result.returncode, (0, 1), result.stderr)
+                    if result.returncode == 1:
+                        self.assertIn("memory", [line for line in result.stderr.splitlines() if "error" in line][-1])
+
+
+class Roots(ProgramTest):
+    GLTF = {"asset": {"version": "2.0"}, "buffers": [{"uri": "../outside.bin", "byteLength": 36}], "bufferViews": [{"buffer": 0, "byteLength": 36}],
+            "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3"}],
+            "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}], "nodes": [{"mesh": 0}], "scenes": [{"nodes": [0]}], "scene": 0}
+
+    def setUp(self):
+        super().setUp()
+        self.write("model/a.gltf", json.dumps(self.GLTF))
+        (self.folder / "outside.bin").write_bytes(struct.pack("<9f", 0, 0, 0, 1, 0, 0, 0, 1, 0))
+
+    def test_hold_for_convert(self):
+        file = self.folder / "model/a.gltf"
+        self.gloam("convert", file, "--colliders", "hull")
+        self.gloam("convert", file, "--colliders", "hull", "--root", self.folder)
+        for options in (["--strict"], ["--root", self.folder / "model"]):
+            self.assertIn("leads out of the folder", self.gloam("convert", file, "--colliders", "hull", *options, expect=1).stderr)
+        self.assertIn("given with --root", self.gloam("convert", file, "--root", self.folder / "elsewhere", expect=1).stderr)
+
+    def test_are_told_of_by_info(self):
+        scene = self.write("model/s.toml", '[[visual]]\nname = "v"\nfile = "a.gltf"\n')
+        for uri in ("../outside.bin", "http://host/a.bin", "/etc/passwd", "missing.bin"):
+            self.write("model/a.gltf", json.dumps({**self.GLTF, "buffers": [{"uri": uri, "byteLength": 36}]}))
+            said = self.gloam("info", scene, "--strict").stdout
+            self.assertIn("/buffers/0", said)
+            self.assertNotIn("everything in the file is simulated and drawn", said)
 
 
 if __name__ == "__main__":

@@ -4,6 +4,8 @@
 #include <cstring>
 #include <limits>
 
+#include "web/client_json.h"
+
 namespace gloam::bridge::foxglove {
 namespace {
 
@@ -175,7 +177,7 @@ class ByteReader {
 }  // namespace
 
 Result<ClientMessage> parse_text_message(std::string_view text) {
-  const json object = json::parse(text, nullptr, false);
+  const json object = web::parse_client_json(text);
   if (object.is_discarded()) return malformed("the message is not JSON");
   const auto found = object.is_object() ? object.find("op") : object.end();
   if (!object.is_object() || found == object.end() || !found->is_string())

@@ -1,5 +1,6 @@
 #include "bridge/foxglove/connection.h"
 
+#include <algorithm>
 #include <array>
 #include <boost/asio/post.hpp>
 #include <boost/beast/http/read.hpp>
@@ -29,9 +30,11 @@ constexpr std::chrono::seconds kGoodbyeTime{2};
 Connection::Connection(net::ip::tcp::socket socket, ServerState& state)
     : state_(state), stream_(std::move(socket)), last_moment_(stream_.get_executor()) {
   state_.connections.insert(this);
+  half_open_ = state_.half_open.enter([this] { stream_.close(); });
 }
 
 Connection::~Connection() {
+  state_.half_open.leave(half_open_);
   state_.connections.erase(this);
   if (state_.connections.empty() && state_.on_empty) state_.on_empty();
 }
@@ -40,7 +43,7 @@ void Connection::read_request() {
   request_.emplace();
   request_->header_limit(kMaxHeader);
   // One deadline for the whole header: sending it byte by byte gains no time.
-  stream_.expires_after(state_.options.request_time);
+  stream_.expires_after(std::min(state_.options.request_time, web::HalfOpen::kPatience));
   http::async_read_header(
       stream_, buffer_, *request_,
       [self = shared_from_this()](error_code error, size_t) { self->on_request(error); });
@@ -54,10 +57,12 @@ void Connection::on_request(error_code error) {
   if (error) return refuse(400, "This is not an HTTP request.");
   const auto& request = request_->get();
   const auto protocols = web::view(request[http::field::sec_websocket_protocol]);
-  const Admission admission =
-      admit(web::facts_of(request), protocols, state_.options.token, state_.loopback_only);
+  const Admission admission = admit(web::facts_of(request, state_.port), protocols,
+                                    state_.options.token, state_.loopback_only);
   if (admission.status != 101) return refuse(admission.status, admission.reason);
-  if (state_.clients >= state_.options.max_clients)
+  // Watchers without the token cannot keep those out who have it.
+  const int alike = admission.may_control ? state_.clients - state_.watchers : state_.watchers;
+  if (alike >= state_.options.max_clients)
     return refuse(503, "This server has all the clients that it may have.");
   become_websocket(admission);
 }
@@ -72,7 +77,7 @@ void Connection::refuse(int status, std::string_view reason) {
   response.keep_alive(false);
   response.body() = std::string(reason) + "\n";
   response.prepare_payload();
-  stream_.expires_after(state_.options.request_time);
+  stream_.expires_after(std::min(state_.options.request_time, web::HalfOpen::kPatience));
   http::async_write(stream_, response, [self = shared_from_this()](error_code error, size_t) {
     if (error) return;
     self->stream_.socket().shutdown(net::ip::tcp::socket::shutdown_send, error);
@@ -92,7 +97,8 @@ void Connection::drain() {
 }
 
 void Connection::become_websocket(const Admission& admission) {
-  ++state_.clients;
+  count(admission.may_control, 1);
+  state_.half_open.leave(std::exchange(half_open_, 0));
   stream_.expires_never();
   websocket_.emplace(std::move(stream_));
   websocket_->set_option(
@@ -106,7 +112,7 @@ void Connection::become_websocket(const Admission& admission) {
   buffer_.clear();
   websocket_->async_accept(request_->get(), [self = shared_from_this(), admission](error_code e) {
     if (!e && !self->closing_) return self->open(admission);
-    --self->state_.clients;
+    self->count(admission.may_control, -1);
   });
 }
 
@@ -122,6 +128,11 @@ void Connection::open(const Admission& admission) {
                                      admission.may_control, wake, state_.options.outbox);
   state_.events->on_open(client_);
   read_message();
+}
+
+void Connection::count(bool may_control, int change) {
+  state_.clients += change;
+  if (!may_control) state_.watchers += change;
 }
 
 void Connection::read_message() {
@@ -188,7 +199,7 @@ void Connection::end() {
   if (client == nullptr) return;
   client->outbox.close();
   state_.dropped += client->outbox.dropped();
-  --state_.clients;
+  count(client->may_control, -1);
   state_.events->on_close(client);
 }
 

@@ -19,6 +19,7 @@
 
 #include "bridge/foxglove/handshake.h"
 #include "bridge/foxglove/server.h"
+#include "web/half_open.h"
 
 namespace gloam::bridge::foxglove {
 
@@ -29,8 +30,10 @@ struct ServerState {
   ServerOptions options;
   bool loopback_only = true;
   ServerEvents* events = nullptr;
+  int port = 0;
   std::set<Connection*> connections;
-  int clients = 0;  ///< WebSockets
+  web::HalfOpen half_open;        ///< connections that are no WebSocket yet
+  int clients = 0, watchers = 0;  ///< WebSockets, those without the token
   int64_t last_client = 0;
   std::atomic<int64_t> dropped{0};  ///< by clients that have gone
   std::function<void()> on_empty;   ///< the last connection is gone
@@ -57,8 +60,10 @@ class Connection : public std::enable_shared_from_this<Connection> {
   void on_message(boost::beast::error_code error);
   void pump();
   void end();
+  void count(bool may_control, int change);
 
   ServerState& state_;
+  int64_t half_open_ = 0;  ///< number among those; 0 = it was let in
   boost::beast::tcp_stream stream_;
   boost::beast::flat_buffer buffer_;
   std::optional<Request> request_;

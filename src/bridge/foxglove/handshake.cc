@@ -4,13 +4,15 @@ namespace gloam::bridge::foxglove {
 
 Admission admit(const web::RequestFacts& request, std::string_view protocols,
                 std::string_view token, bool loopback_only) {
-  if (request.hosts != 1) return {400, "The request must have exactly one Host field.", {}};
+  if (const std::string_view why = web::why_malformed(request); !why.empty()) return {400, why, {}};
   if (request.method != "GET") return {405, "This server knows GET only.", {}};
   const bool has_token = web::carries_token(request, token);
   if (!has_token) {
     // A page whose name was rebound to this machine has its own name in Host.
     if (!web::is_loopback_name(web::host_name(request.host)))
       return {403, "Without the token this server answers to loopback names only.", {}};
+    if (!web::has_own_port(request))
+      return {403, "The port in Host is not this server's (a tunnel must keep it).", {}};
     if (!request.origin.empty())
       return {403, "A page needs the address that Gloam printed, with its token.", {}};
     if (!loopback_only)

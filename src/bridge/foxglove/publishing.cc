@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "bridge/foxglove/json_message.h"
+#include "web/client_json.h"
 
 namespace gloam::bridge::foxglove {
 namespace {
@@ -84,8 +85,8 @@ void Publishing::publish(const ClientPtr& client, const PublishMessage& message)
   if (channel.json == nullptr) {
     status = simulation_.publish(channel.topic, message.data);
   } else {
-    const auto object =
-        nlohmann::json::parse(message.data.begin(), message.data.end(), nullptr, false);
+    const auto object = web::parse_client_json(
+        {reinterpret_cast<const char*>(message.data.data()), message.data.size()});
     const auto bytes = cdr_from_json(*channel.json, object);
     status = bytes.ok() ? simulation_.publish(channel.topic, *bytes) : Status(bytes.error());
   }

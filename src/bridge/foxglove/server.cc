@@ -18,7 +18,6 @@ using boost::system::error_code;
 using net::ip::tcp;
 
 constexpr std::chrono::milliseconds kStopTime{700};
-constexpr size_t kSpareConnections = 64;  // so that half-open ones do not keep clients out
 
 }  // namespace
 
@@ -36,6 +35,7 @@ class Server::Impl {
     const ServerOptions& options = state_.options;
     GLOAM_TRY_STATUS(listener_.listen(options.host, options.port,
                                       "try --port 0, or bridge.foxglove.port of the scene"));
+    state_.port = port();
     listener_.accept([this](tcp::socket socket) { take(std::move(socket)); });
     tick();
     thread_ = std::thread([this] { run(); });
@@ -64,8 +64,6 @@ class Server::Impl {
   }
 
   void take(tcp::socket socket) {
-    const auto most = static_cast<size_t>(state_.options.max_clients) + kSpareConnections;
-    if (state_.connections.size() >= most) return web::turn_away(socket);
     std::make_shared<Connection>(std::move(socket), state_)->read_request();
   }
 

@@ -18,8 +18,8 @@ namespace gloam::bridge::foxglove {
 
 struct ServerOptions {
   std::string host = "127.0.0.1";
-  int port = 0;  ///< 0 = any free one
-  int max_clients = 32;
+  int port = 0;          ///< 0 = any free one
+  int max_clients = 32;  ///< with the token, and as many without it
   std::string token;
   OutboxLimits outbox;
   size_t message_bytes = size_t{1} << 20;        ///< longest message of a client

@@ -7,6 +7,7 @@
 #include "ros/codec.h"
 #include "ros/message_types.h"
 #include "ros/messages/std_srvs.h"
+#include "web/client_json.h"
 
 namespace gloam::bridge::foxglove {
 namespace {
@@ -70,8 +71,8 @@ Result<Services::Bytes> Services::request_of(const CallMessage& message) const {
     return Error{ErrorKind::kInput, "there is no service " + std::to_string(message.service)};
   const Service& service = *services_[message.service - 1];
   if (message.encoding == "json") {
-    const auto object =
-        nlohmann::json::parse(message.data.begin(), message.data.end(), nullptr, false);
+    const auto object = web::parse_client_json(
+        {reinterpret_cast<const char*>(message.data.data()), message.data.size()});
     return cdr_from_json(service.request, object);
   }
   if (message.encoding != "cdr")

@@ -1,9 +1,11 @@
 // The bridge to ROS 2: one node with the topics that the simulation says and hears, and services.
 
+#include <charconv>
 #include <chrono>
 #include <condition_variable>
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
 #include <mutex>
 #include <thread>
 
@@ -15,6 +17,7 @@
 #include "bridge/ros2/topic_inlets.h"
 #include "bridge/ros2/topic_outlets.h"
 #include "bridge/topic_filter.h"
+#include "gloam/text.h"
 
 namespace gloam::bridge {
 namespace {
@@ -26,9 +29,11 @@ Result<int> domain_of(const Ros2Options& options) {
   if (options.domain) return *options.domain;
   const char* given = std::getenv("ROS_DOMAIN_ID");
   if (given == nullptr || *given == '\0') return 0;
-  char* end = nullptr;
-  const long domain = std::strtol(given, &end, 10);
-  if (*end == '\0' && domain >= 0 && domain <= kLargestDomain) return static_cast<int>(domain);
+  const char* const end = given + std::strlen(given);
+  int domain = -1;  // strtol would take blanks and signs
+  const auto [after, error] = std::from_chars(given, end, domain);
+  if (error == std::errc() && after == end && domain >= 0 && domain <= kLargestDomain)
+    return domain;
   return Error{ErrorKind::kUsage, std::string("ROS_DOMAIN_ID '") + given + "' is not 0 … 232"};
 }
 
@@ -126,7 +131,7 @@ class Ros2Bridge final : public Bridge {
       if (now - told > std::chrono::seconds(1)) {
         const std::string refusal = inlets_->take_refusal();
         if (!refusal.empty()) {
-          std::fprintf(stderr, "gloam: ros2: refused: %s\n", refusal.c_str());
+          std::fprintf(stderr, "gloam: ros2: refused: %s\n", printable(refusal).c_str());
           told = now;
         }
       }

@@ -564,6 +564,19 @@ TEST_F(FoxgloveBridgeTest, ManyStuckClientsHoldNobodyUp) {
   EXPECT_TRUE(eventually([&] { return bridge_->stats().clients == 1; }));
 }
 
+TEST_F(FoxgloveBridgeTest, TheOwnerGetsInAmongStrangers) {
+  start({.port = 0, .max_clients = 4});
+  std::vector<std::unique_ptr<FoxgloveClient>> strangers;
+  const auto come = [&] {
+    return strangers.emplace_back(std::make_unique<FoxgloveClient>(port_)).get();
+  };
+  for (int i = 0; i < 4; ++i) ASSERT_EQ(come()->upgrade("/", kV1), 101);
+  EXPECT_EQ(come()->upgrade("/", kV1), 503);
+  for (int i = 0; i < 200; ++i) come()->send_bytes("GET / HTTP/1.1\r\nHost: loc");
+  FoxgloveClient owner(port_);
+  EXPECT_EQ(owner.upgrade(kWithToken, kV1), 101);
+}
+
 TEST_F(FoxgloveBridgeTest, TheEndIsToldToClients) {
   FoxgloveClient client(port_);
   ASSERT_EQ(client.upgrade("/", kV1), 101);

@@ -4,13 +4,13 @@
 
 #include <algorithm>
 
+#include "base/nesting.h"
 #include "geometry/mesh/text_lines.h"
 
 namespace gloam {
 namespace {
 
 constexpr size_t kMostElements = size_t{4} << 20;
-constexpr int kDeepestElement = 256;
 
 bool is_space(char c) { return c == ' ' || (c >= '\t' && c <= '\r'); }
 
@@ -39,14 +39,13 @@ Result<std::unique_ptr<ColladaDocument>> ColladaDocument::open(const ModelSource
   std::unique_ptr<ColladaDocument> out(new ColladaDocument(source));
   const auto refuse = [&](std::string message, ptrdiff_t offset) {
     const std::string_view text = as_text(source.bytes);
-    const auto end = static_cast<size_t>(std::clamp<ptrdiff_t>(offset, 0, std::ssize(text)));
-    const auto line =
-        1 + std::count(text.begin(), text.begin() + static_cast<ptrdiff_t>(end), '\n');
     return Error{ErrorKind::kInput,
                  std::move(message),
-                 {source.name, static_cast<int>(line), 0},
+                 {source.name, line_at(text, static_cast<size_t>(offset)), 0},
                  "the file may be cut off: export the model again"};
   };
+  if (const auto excess = xml_excess(as_text(source.bytes)))
+    return refuse(excess->what, static_cast<ptrdiff_t>(excess->at));
   // A document type and the entities that it declares are skipped, so nothing else is opened.
   const pugi::xml_parse_result parsed = out->document_.load_buffer(
       source.bytes.data(), source.bytes.size(), pugi::parse_default, pugi::encoding_utf8);
@@ -54,16 +53,14 @@ Result<std::unique_ptr<ColladaDocument>> ColladaDocument::open(const ModelSource
     return refuse(fmt::format("is not well-formed XML: {}", parsed.description()), parsed.offset);
   if (!out->root()) return refuse("is no COLLADA file: its top element is not <COLLADA>", 0);
   size_t count = 0;
-  int depth = 0;
   for (pugi::xml_node node = out->root(); node;) {
     if (++count > kMostElements) return refuse("has more elements than the limit", 0);
     if (const char* id = node.attribute("id").value(); *id != 0) out->ids_.emplace(id, node);
     if (node.first_child()) {
-      if (++depth > kDeepestElement) return refuse("is nested too deep", node.offset_debug());
       node = node.first_child();
       continue;
     }
-    while (node && !node.next_sibling() && node != out->root()) node = node.parent(), --depth;
+    while (node && !node.next_sibling() && node != out->root()) node = node.parent();
     node = node == out->root() ? pugi::xml_node() : node.next_sibling();
   }
   return out;
@@ -76,9 +73,7 @@ pugi::xml_node ColladaDocument::find(std::string_view url) const {
 }
 
 SourceLoc ColladaDocument::loc_of(const pugi::xml_node& node) const {
-  const std::string_view text = as_text(source_.bytes);
-  const auto end = std::clamp<ptrdiff_t>(node.offset_debug(), 0, std::ssize(text));
-  return {source_.name, static_cast<int>(1 + std::count(text.begin(), text.begin() + end, '\n')),
+  return {source_.name, line_at(as_text(source_.bytes), static_cast<size_t>(node.offset_debug())),
           0};
 }
 

@@ -4,39 +4,10 @@
 
 #include <cmath>
 
+#include "base/nesting.h"
+
 namespace gloam {
 using nlohmann::json;
-namespace {
-
-// Before the parser builds anything: "" or why not. Only brackets and commas outside of strings
-// count; whether it is JSON at all is the parser's business.
-std::string why_too_large(std::span<const uint8_t> text) {
-  int depth = 0;
-  uint64_t values = 1;
-  bool in_string = false;
-  for (size_t i = 0; i < text.size(); ++i) {
-    const uint8_t c = text[i];
-    if (in_string) {
-      if (c == '\\') ++i;
-      if (c == '"') in_string = false;
-    } else if (c == '"') {
-      in_string = true;
-    } else if (c == '{' || c == '[') {
-      ++values;
-      if (++depth > kMaxJsonDepth)
-        return fmt::format("byte {}: it nests deeper than {} levels", i, kMaxJsonDepth);
-    } else if (c == '}' || c == ']') {
-      --depth;
-    } else if (c == ',') {
-      ++values;
-    }
-  }
-  if (values > kMaxJsonValues)
-    return fmt::format("it has about {} values; the limit is {}", values, kMaxJsonValues);
-  return {};
-}
-
-}  // namespace
 
 void JsonErrors::add(const std::string& pointer, std::string_view message, std::string hint) {
   if (first_) return;
@@ -53,8 +24,9 @@ Result<json> parse_bounded_json(std::span<const uint8_t> text, const std::string
                  {file, 0, 0},
                  "export the model again; it may be cut off or damaged"};
   };
-  if (const std::string why = why_too_large(text); !why.empty())
-    return bad("not readable as JSON: " + why);
+  const std::string_view characters(reinterpret_cast<const char*>(text.data()), text.size());
+  if (const auto excess = json_excess(characters, kMaxJsonValues))
+    return bad(fmt::format("not readable as JSON: byte {}: {}", excess->at, excess->what));
   try {
     return json::parse(text.begin(), text.end());
   } catch (const json::parse_error& error) {

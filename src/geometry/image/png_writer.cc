@@ -3,15 +3,25 @@
 #include <png.h>
 
 #include <csetjmp>
+#include <new>
 
 #include "base/check.h"
 
 namespace gloam {
 namespace {
 
+// No exception may cross libpng, which is C: false where there is no memory.
+bool append(std::vector<uint8_t>* out, const uint8_t* bytes, size_t count) noexcept {
+  try {
+    out->insert(out->end(), bytes, bytes + count);
+    return true;
+  } catch (const std::bad_alloc&) {
+    return false;
+  }
+}
 void append_bytes(png_structp png, png_bytep bytes, size_t count) {
-  auto* out = static_cast<std::vector<uint8_t>*>(png_get_io_ptr(png));
-  out->insert(out->end(), bytes, bytes + count);
+  if (!append(static_cast<std::vector<uint8_t>*>(png_get_io_ptr(png)), bytes, count))
+    png_error(png, "out of memory");
 }
 void flush_nothing(png_structp) {}
 void ignore_warning(png_structp, png_const_charp) {}
@@ -53,7 +63,8 @@ bool write_png(const Layout& layout, const uint8_t* rows, std::vector<uint8_t>* 
 std::vector<uint8_t> encode(const Layout& layout, const uint8_t* rows) {
   std::vector<uint8_t> out;
   out.reserve(layout.row_bytes * static_cast<size_t>(layout.height) / 2 + 1024);
-  GLOAM_CHECK(write_png(layout, rows, &out), "PNG encoding failed");
+  if (!write_png(layout, rows, &out))
+    throw std::bad_alloc();  // a layout of ours has no other fault
   return out;
 }
 

@@ -16,9 +16,7 @@ struct ModelLimits {
   uint64_t external_files = 4096;
 };
 
-/// JSON of glTF: how deep arrays and objects may nest, and how many values there may be. A value
-/// takes up to about 100 bytes in memory.
-inline constexpr int kMaxJsonDepth = 64;
+/// JSON of glTF: how many values there may be. A value takes up to about 100 bytes in memory.
 inline constexpr uint64_t kMaxJsonValues = uint64_t{8} << 20;
 /// Data without a buffer (glTF: an accessor that is all zeros but for a sparse part).
 inline constexpr uint64_t kMaxZeroElements = uint64_t{1} << 20;

@@ -4,6 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "base/nesting.h"
 #include "sim/commands/live_fields.h"
 
 namespace gloam {
@@ -154,6 +155,7 @@ std::string command_text(const LoggedCommand& logged, const CompiledWorld& world
 }
 
 Result<LoggedCommand> parse_command(std::string_view text) {
+  GLOAM_TRY_STATUS(check_excess(json_excess(text), text, "a command in the log"));
   try {
     const Json json = Json::parse(text);
     LoggedCommand logged;

@@ -7,6 +7,7 @@
 
 #include "base/files.h"
 #include "base/hash.h"
+#include "base/nesting.h"
 #include "gloam/log_replay.h"
 
 namespace gloam {
@@ -38,9 +39,9 @@ Result<std::string> fingerprint(const VariantRequest& request) {
 }
 
 bool is_finished(const fs::path& folder) {
-  const auto text = read_file(folder / "summary.json");
+  const auto text = read_text_file(folder / "summary.json");
   if (!text.ok()) return false;
-  const Json summary = Json::parse(*text, nullptr, false);
+  const Json summary = parse_bounded<Json>(*text);
   return summary.is_object() && summary.value("state", "") == "finished" &&
          summary.value("exit_reason", "") == "completed";
 }
@@ -49,8 +50,8 @@ bool is_finished(const fs::path& folder) {
 Status check_list(const fs::path& list, const std::string& request) {
   std::error_code code;
   if (!fs::exists(list, code)) return {};
-  GLOAM_TRY(const std::vector<uint8_t> text, read_file(list));
-  const Json json = Json::parse(text, nullptr, false);
+  GLOAM_TRY(const std::string text, read_text_file(list));
+  const Json json = parse_bounded<Json>(text);
   if (json.is_object() && json.value("request", "") == request) return {};
   return Error{ErrorKind::kUsage,
                fmt::format("{} lists variants of another log, file or settings", list.string()),

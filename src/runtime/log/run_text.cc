@@ -6,6 +6,7 @@
 
 #include "base/files.h"
 #include "base/hash.h"
+#include "base/nesting.h"
 #include "gloam/options.h"
 #include "gloam/program.h"
 #include "world/version.h"
@@ -83,6 +84,7 @@ std::string to_json(const RunText& text) {
 }
 
 Result<RunText> parse_run_text(std::string_view json_text) {
+  GLOAM_TRY_STATUS(check_excess(json_excess(json_text), json_text, "the log's run"));
   try {
     const Json json = Json::parse(json_text);
     RunText text;
@@ -132,6 +134,12 @@ fs::path folder_of(const RunText& text, const fs::path& folder) {
 
 Result<Scene> scene_of(const RunText& text, const fs::path& folder) {
   const fs::path from = folder_of(text, folder);
+  // A stranger's log could lead out of the folder.
+  for (const fs::path file : {text.file, text.bare_model})
+    if (file != file.filename() || file == "..")
+      return Error{ErrorKind::kInput, fmt::format("the log's run is of '{:.80}', which is no file "
+                                                  "of a folder",
+                                                  file.string())};
   Scene scene;
   if (text.bare_model.empty()) {
     GLOAM_TRY(scene, parse_scene(text.toml, from));

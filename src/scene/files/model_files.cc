@@ -77,10 +77,21 @@ ModelFiles::ModelFiles() {
 
 ModelFiles::~ModelFiles() { mj_deleteVFS(&vfs_); }
 
+// MuJoCo is C to the caller of a provider: no exception may pass, on threads of its own least of
+// all.
 int ModelFiles::provider_open(mjResource* resource) {
   auto* files = static_cast<ModelFiles*>(resource->provider->data);
+  try {
+    return files->open_resource(resource);
+  } catch (const std::exception&) {
+    files->lacks_memory_ = true;
+    return 0;
+  }
+}
+
+int ModelFiles::open_resource(mjResource* resource) {
   std::string hash;
-  Result<Content> content = files->open(fs::path(resource->name).lexically_normal(), &hash);
+  Result<Content> content = open(fs::path(resource->name).lexically_normal(), &hash);
   if (!content.ok()) return 0;
   // MuJoCo keeps parsed meshes by name and timestamp; the content's hash never goes stale.
   std::snprintf(resource->timestamp, sizeof(resource->timestamp), "%s", hash.c_str());
@@ -410,6 +421,11 @@ void ModelFiles::explain_picture(Error* error) const {
 
 Error ModelFiles::explain(const std::string& message, const fs::path& model) const {
   const std::lock_guard lock(mutex_);
+  if (lacks_memory_ || is_want_of_memory(message))
+    return {ErrorKind::kInput,
+            "out of memory: MuJoCo cannot compile the model",
+            {model.string(), 0, 0},
+            "give the process more, or use smaller meshes and pictures"};
   for (const Failure& failure : failures_) {
     if (message.find(failure.path.filename().string()) == std::string::npos) continue;
     Error error{failure.kind, fmt::format("'{}' {}", failure.path.string(), failure.reason),
@@ -453,6 +469,7 @@ Error ModelFiles::explain(const std::string& message, const fs::path& model) con
 void ModelFiles::forget_failures() {
   const std::lock_guard lock(mutex_);
   failures_.clear();
+  lacks_memory_ = false;
 }
 
 std::vector<Dependency> ModelFiles::dependencies() const {

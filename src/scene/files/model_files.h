@@ -5,6 +5,7 @@
 
 #include <mujoco/mujoco.h>
 
+#include <atomic>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -98,6 +99,7 @@ class ModelFiles {
   // Place in the file of a model in TOML for a place in its XML.
   SourceLoc written_at(SourceLoc loc) const;
 
+  int open_resource(mjResource* resource);
   static int provider_open(mjResource* resource);
   static int provider_read(mjResource* resource, const void** buffer);
   static void provider_close(mjResource* resource);
@@ -116,7 +118,8 @@ class ModelFiles {
   std::vector<Dependency> dependencies_;
   std::set<std::filesystem::path> depended_;
   std::vector<Failure> failures_;
-  uint64_t total_size_ = 0;  // [bytes]
+  std::atomic<bool> lacks_memory_{false};  // an exception said so, in a callback
+  uint64_t total_size_ = 0;                // [bytes]
 };
 
 }  // namespace gloam

@@ -11,6 +11,7 @@
 #include "base/files.h"
 #include "base/plain_text.h"
 #include "geometry/mesh/model_file.h"
+#include "scene/files/xml_text.h"
 
 namespace gloam {
 namespace fs = std::filesystem;
@@ -162,7 +163,7 @@ fs::path find_package(const std::string& name, const fs::path& file, const FileA
     if (!has_package_xml(folder)) continue;
     const Result<std::string> text = read_plain_text(folder / "package.xml", kLargestPackageXml);
     pugi::xml_document document;
-    if (text.ok() && document.load_buffer(text->data(), text->size()) &&
+    if (text.ok() && parse_xml(*text, "", pugi::parse_default, &document).ok() &&
         name == document.child("package").child_value("name"))
       return folder;
   }

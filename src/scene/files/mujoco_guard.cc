@@ -2,6 +2,7 @@
 
 #include <mujoco/mujoco.h>
 #include <setjmp.h>
+#include <signal.h>
 
 #include <atomic>
 #include <cctype>
@@ -11,6 +12,7 @@
 
 #include "base/check.h"
 #include "base/log.h"
+#include "base/memory.h"
 
 namespace gloam {
 namespace {
@@ -30,9 +32,39 @@ void copy_message(const char* text) {
   }
 }
 
-void handle_message(const mjLogMessage* message) {
+// MuJoCo's compiler is C++ with a runtime library of its own, whose unwinder reads frames of ours
+// wrongly. Its exceptions therefore end before they come here, in its std::terminate() and so in
+// abort(), and the process with them: what its threads and locks are in by then nobody knows.
+struct sigaction previous_abort = {};
+
+void on_abort(int signal) {
+  if (recovery_point != nullptr) end_out_of_memory(", or MuJoCo failed without a message");
+  ::sigaction(signal, &previous_abort, nullptr);  // abort() raises it again
+  if (previous_abort.sa_handler != SIG_DFL && previous_abort.sa_handler != SIG_IGN) ::raise(signal);
+}
+
+void catch_abort() {
+  struct sigaction action = {};
+  action.sa_handler = on_abort;
+  ::sigaction(SIGABRT, &action, &previous_abort);
+}
+
+// No caller is known above this frame, so that an unwinder ends its search here.
+[[gnu::noinline]] void call_as_outermost(void (*call)(void*), void* context) {
+#if defined(__x86_64__)
+  asm volatile(".cfi_undefined rip");
+#elif defined(__aarch64__)
+  asm volatile(".cfi_undefined x30");
+#endif
+  call(context);
+  asm volatile("" ::: "memory");  // no tail call
+}
+
+void take_message(const mjLogMessage* message) {
   if (message->level == mjLOG_ERROR) {
     copy_message(message->subject);
+    if (recovery_point == nullptr && is_want_of_memory(error_message))
+      end_out_of_memory(", in MuJoCo");
     GLOAM_CHECK(recovery_point != nullptr, error_message);
     _longjmp(*recovery_point, 1);
   }
@@ -48,7 +80,21 @@ void handle_message(const mjLogMessage* message) {
   }
 }
 
+// A warning that there is no memory to tell of is lost: no exception may cross MuJoCo.
+void handle_message(const mjLogMessage* message) {
+  try {
+    take_message(message);
+  } catch (const std::exception&) {  // counted it is
+  }
+}
+
 }  // namespace
+
+bool is_want_of_memory(std::string_view message) {
+  for (const std::string_view said : {"ould not allocate", "memory allocation failed", "bad_alloc"})
+    if (message.find(said) != std::string_view::npos) return true;
+  return false;
+}
 
 std::string plain_message(std::string_view said) {
   const auto is_blank = [](char c) { return std::isspace(static_cast<unsigned char>(c)) != 0; };
@@ -76,6 +122,7 @@ void install_mujoco_handler() {
     config.logfile[0] = 0;
     mju_setLogConfig(config);
     mju_setLogHandler(handle_message);
+    catch_abort();
   });
 }
 
@@ -107,17 +154,7 @@ bool run_guarded(void (*call)(void*), void* context) {
     recovery_point = outer;
     return false;
   }
-  try {
-    call(context);
-  } catch (const std::exception& exception) {  // MuJoCo's compiler is C++ inside
-    recovery_point = outer;
-    copy_message(exception.what());
-    return false;
-  } catch (...) {  // exception of its own standard library, whose types this program does not know
-    recovery_point = outer;
-    copy_message("MuJoCo failed without a message");
-    return false;
-  }
+  call_as_outermost(call, context);
   recovery_point = outer;
   return true;
 }

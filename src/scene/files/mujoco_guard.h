@@ -23,6 +23,9 @@ const char* mujoco_error_message();
 /// Message of MuJoCo as one line and without "XML Error: ".
 std::string plain_message(std::string_view said);
 
+/// Does MuJoCo say that it got no memory?
+bool is_want_of_memory(std::string_view message);
+
 /// Warnings that MuJoCo has logged in this process; mjData::warning counts them by type as well.
 int64_t mujoco_warning_count();
 
@@ -51,7 +54,9 @@ bool run_guarded(void (*call)(void*), void* context);
 /// Calls f(). False when MuJoCo reported an error in it: see mujoco_error_message(). Allocates and
 /// locks nothing, so it may stand in the step loop (a few nanoseconds). The error jumps over the
 /// frames between here and MuJoCo: f may only call C functions, and must hold no object with a
-/// destructor. Guarded calls nest. Only the calling thread is covered, not MuJoCo's own pool.
+/// destructor. No exception passes: one of MuJoCo's compiler, which is C++ inside and without
+/// memory throws, ends the process with a message and exit code 1. Guarded calls nest. Only the
+/// calling thread is covered, not MuJoCo's own pool.
 template <class F>
 bool try_mujoco(F&& f) {
   using Callable = std::remove_reference_t<F>;

@@ -14,6 +14,7 @@
 #include "base/files.h"
 #include "geometry/mesh/model_file.h"
 #include "scene/files/model_path.h"
+#include "scene/files/xml_text.h"
 
 namespace gloam {
 namespace fs = std::filesystem;
@@ -42,27 +43,17 @@ bool mujoco_reads(const fs::path& path) {
   return !is_model_file(path) || extension == ".obj";
 }
 
-int line_at(const std::string& text, ptrdiff_t offset) {
-  const auto end =
-      text.begin() + std::clamp<ptrdiff_t>(offset, 0, static_cast<ptrdiff_t>(text.size()));
-  return static_cast<int>(std::count(text.begin(), end, '\n')) + 1;
-}
+constexpr int kDeepestLinks = 512;  // MuJoCo takes a quarter of a second for such a chain
 
 class Preparer {
  public:
   Preparer(const std::string& text, const fs::path& file, const FileAccess& access,
            const std::function<bool(const fs::path&)>& exists)
-      : text_(text), file_(file), access_(access), exists_(exists) {}
+      : text_(text), lines_(text), file_(file), access_(access), exists_(exists) {}
 
   Result<UrdfText> run() {
     pugi::xml_document document;
-    const pugi::xml_parse_result parsed =
-        document.load_buffer(text_.data(), text_.size(), pugi::parse_full, pugi::encoding_utf8);
-    if (!parsed) {
-      return Error{ErrorKind::kInput,
-                   fmt::format("is not well-formed XML: {}", parsed.description()),
-                   {file_.string(), line_at(text_, parsed.offset), 0}};
-    }
+    GLOAM_TRY_STATUS(parse_xml(text_, file_.string(), pugi::parse_full, &document));
     const pugi::xml_node robot = document.child("robot");
     GLOAM_TRY_STATUS(check_tree(robot));
     read_compiler(robot);
@@ -119,10 +110,33 @@ class Preparer {
     const bool has_root = links.empty() || std::ranges::any_of(links, [&](const auto& link) {
                             return !joint_above.contains(link.first);
                           });
-    if (has_root) return {};
+    if (has_root) return check_depth(robot, joint_above);
     return Error{ErrorKind::kInput, "every link hangs from a joint: the joints make a loop",
                  loc_of(robot.child("joint")),
                  "one link must be the root; close loops by <equality> in MJCF"};
+  }
+
+  // Lengths of chains of links. MuJoCo's time grows with the square of the longest.
+  Status check_depth(const pugi::xml_node& robot,
+                     const std::map<std::string, pugi::xml_node>& joint_above) const {
+    std::map<std::string, int> depths;
+    for (const pugi::xml_node& link : robot.children("link")) {
+      std::vector<std::string> unknown;  // from the link up
+      std::string name = link.attribute("name").value();
+      while (!depths.contains(name) && unknown.size() <= kDeepestLinks) {
+        unknown.push_back(name);
+        const auto joint = joint_above.find(name);
+        if (joint == joint_above.end()) break;
+        name = joint->second.child("parent").attribute("link").value();
+      }
+      int depth = depths.contains(name) ? depths[name] : 0;
+      for (; !unknown.empty(); unknown.pop_back()) depths[unknown.back()] = ++depth;
+      if (depth > kDeepestLinks)
+        return Error{ErrorKind::kInput,
+                     fmt::format("links hang from each other more than {} deep", kDeepestLinks),
+                     loc_of(link), "a rope or a cable is a <flexcomp> in MJCF"};
+    }
+    return {};
   }
 
   // MuJoCo reads the colours of materials, not their pictures.
@@ -184,7 +198,7 @@ class Preparer {
   }
 
   SourceLoc loc_of(const pugi::xml_node& node) const {
-    return {file_.string(), line_at(text_, node.offset_debug()), 0};
+    return {file_.string(), lines_.at(node.offset_debug()), 0};
   }
 
   Result<fs::path> find_mesh(const pugi::xml_node& mesh) const {
@@ -323,6 +337,7 @@ class Preparer {
   }
 
   const std::string& text_;
+  const XmlLines lines_;
   const fs::path& file_;
   const FileAccess& access_;
   const std::function<bool(const fs::path&)>& exists_;

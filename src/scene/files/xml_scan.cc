@@ -70,14 +70,14 @@ double memory_bytes(const char* text) {
              : x * std::pow(1024.0, static_cast<double>(unit) + 1);
 }
 
-// Calls visit(node, depth) on every element in document order without recursion; stops when it
+// Calls visit(node) on every element in document order without recursion; stops when it
 // returns false.
 template <class Visit>
 void walk(const pugi::xml_document& document, Visit&& visit) {
   pugi::xml_node node = document.document_element();
   int depth = 1;
   while (node) {
-    if (node.type() == pugi::node_element && !visit(node, depth)) return;
+    if (node.type() == pugi::node_element && !visit(node)) return;
     if (node.first_child()) {
       node = node.first_child();
       ++depth;
@@ -176,12 +176,9 @@ Result<XmlScan> scan_model_xml(std::string_view text, const std::string& file) {
   scan.root = document.document_element().name();
   Status status;
   int64_t elements = 0;
-  walk(document, [&](const pugi::xml_node& node, int depth) {
+  walk(document, [&](const pugi::xml_node& node) {
     const auto loc = [&] { return loc_at(node.offset_debug()); };
-    if (depth > kDeepestXml) {
-      status = Error{ErrorKind::kInput,
-                     fmt::format("elements are nested more than {} deep", kDeepestXml), loc()};
-    } else if (++elements > kMostElements) {
+    if (++elements > kMostElements) {
       status =
           Error{ErrorKind::kInput, fmt::format("has more than {} elements", kMostElements), loc()};
     } else {
@@ -209,7 +206,7 @@ bool has_element_at(std::string_view text, std::string_view name, int line) {
   if (!parse_xml(text, "", pugi::parse_default, &document).ok()) return false;
   const XmlLines lines(text);
   bool found = false;
-  walk(document, [&](const pugi::xml_node& node, int) {
+  walk(document, [&](const pugi::xml_node& node) {
     found = (name.empty() || name == node.name()) && lines.at(node.offset_debug()) == line;
     return !found;
   });
@@ -221,7 +218,7 @@ int line_of_element(std::string_view text, std::string_view name) {
   if (!parse_xml(text, "", pugi::parse_default, &document).ok()) return 0;
   const XmlLines lines(text);
   int line = 0;
-  walk(document, [&](const pugi::xml_node& node, int) {
+  walk(document, [&](const pugi::xml_node& node) {
     if (name != node.name()) return true;
     line = lines.at(node.offset_debug());
     return false;
@@ -235,7 +232,7 @@ int line_of_element_with(std::string_view text, std::string_view name,
   if (!parse_xml(text, "", pugi::parse_default, &document).ok()) return 0;
   const XmlLines lines(text);
   int line = 0;
-  walk(document, [&](const pugi::xml_node& node, int) {
+  walk(document, [&](const pugi::xml_node& node) {
     if (!name.empty() && name != node.name()) return true;
     for (const pugi::xml_attribute& attribute : node.attributes()) {
       for (const std::string& word : words) {

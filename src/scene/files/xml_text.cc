@@ -18,6 +18,7 @@ int XmlLines::at(ptrdiff_t offset) const {
 
 Status parse_xml(std::string_view text, const std::string& file, unsigned options,
                  pugi::xml_document* document) {
+  GLOAM_TRY_STATUS(check_excess(xml_excess(text), text, file));
   const pugi::xml_parse_result parsed =
       document->load_buffer(text.data(), text.size(), options, pugi::encoding_utf8);
   if (parsed) return {};

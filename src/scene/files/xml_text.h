@@ -7,11 +7,10 @@
 #include <string_view>
 #include <vector>
 
+#include "base/nesting.h"
 #include "gloam/result.h"
 
 namespace gloam {
-
-inline constexpr int kDeepestXml = 200;  ///< elements in each other, in files of strangers
 
 /// Line numbers of offsets into a text.
 class XmlLines {
@@ -23,7 +22,8 @@ class XmlLines {
   std::vector<ptrdiff_t> ends_;
 };
 
-/// `options` are pugixml's parse_… flags. Errors: empty, not well-formed, with `file` and line.
+/// `options` are pugixml's parse_… flags. Errors with `file` and line: empty, not
+/// well-formed, beyond the limits of nesting.h.
 Status parse_xml(std::string_view text, const std::string& file, unsigned options,
                  pugi::xml_document* document);
 

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "scene/files/mujoco_guard.h"
+#include "scene/files/urdf_text.h"
 #include "scene/test/temp_folder.h"
 
 namespace gloam {
@@ -50,6 +51,38 @@ TEST(XmlScan, RefusesWhatWouldHurtMuJoCo) {
   EXPECT_THAT(error_of("<m><texture width='1e9'/></m>"), HasSubstr("texture width"));
   EXPECT_THAT(error_of("<m><size memory='9P'/></m>"), HasSubstr("64G"));
   EXPECT_EQ(error_of("<m><size memory='100M'/><flexcomp count='10 10 10'/></m>"), "");
+}
+
+// MuJoCo compares each attribute with all before it, and walks up from each link.
+TEST(XmlScan, RefusesWhatTakesMuJoCoLong) {
+  std::string wide = "<mujoco>\n<worldbody>\n<geom ";
+  for (int i = 0; i < 100'000; ++i) wide += "a" + std::to_string(i) + "='1' ";
+  const Result<XmlScan> scan = scan_model_xml(wide + "/></worldbody></mujoco>", "m.xml");
+  ASSERT_FALSE(scan.ok());
+  EXPECT_EQ(scan.error().to_string(), "m.xml:3: an element has more than 1000 attributes");
+}
+
+std::string chain_of_links(int joints) {
+  std::string text = "<robot name='r'>\n<link name='0'/>\n";
+  for (int i = 1; i <= joints; ++i) {
+    const std::string name = std::to_string(i);
+    text += "<link name='" + name + "'/><joint name='j" + name + "' type='fixed'><parent link='" +
+            std::to_string(i - 1) + "'/><child link='" + name + "'/></joint>\n";
+  }
+  return text + "</robot>";
+}
+
+TEST(UrdfText, BoundsTheDepthOfLinks) {
+  const TempFolder folder;
+  const auto error_of = [&](int joints) {
+    const fs::path file = folder.write("r.urdf", "");
+    const auto text =
+        prepare_urdf(chain_of_links(joints), file, {}, [](const fs::path&) { return true; });
+    return text.ok() ? "" : text.error().to_string();
+  };
+  EXPECT_EQ(error_of(511), "");
+  EXPECT_THAT(error_of(2000), HasSubstr("links hang from each other more than 512 deep"));
+  EXPECT_THAT(error_of(2000), HasSubstr("r.urdf:514"));
 }
 
 TEST(XmlScan, RefusesWhatEndsMuJoCosProcess) {

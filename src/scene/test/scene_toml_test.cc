@@ -346,5 +346,17 @@ TEST_F(SetOption, RefusesWhatTheFileWouldRefuse) {
   EXPECT_EQ(scene_.sim.duration, 10);  // unchanged
 }
 
+// Parsers and whoever walks the tables recurse.
+TEST_F(SceneToml, RefusesWhatNestsTooDeep) {
+  std::string parts;
+  for (int i = 0; i < 40'000; ++i) parts += "a.";
+  EXPECT_THAT(error_of("\n" + parts + "b = 1"), HasSubstr("scene.toml:2: keys and tables are"));
+  EXPECT_THAT(error_of("[" + parts + "b]"), HasSubstr("nested more than 256 deep"));
+  EXPECT_THAT(error_of("[mujoco]\n[mujoco." + parts + "b]"), HasSubstr("scene.toml:2"));
+  Scene scene;
+  EXPECT_FALSE(set_option(scene, parts + "b", "1").ok());
+  EXPECT_FALSE(set_option(scene, "sim.duration", std::string(40'000, '[')).ok());
+}
+
 }  // namespace
 }  // namespace gloam

@@ -1,5 +1,6 @@
 #include "scene/toml/toml_reader.h"
 
+#include "base/nesting.h"
 #include "scene/toml/table_reader.h"
 
 namespace gloam {
@@ -25,6 +26,7 @@ bool exact_rational(double x, Rational* out) {
 }
 
 Result<toml::table> parse_toml(std::string_view text, const std::string& file) {
+  GLOAM_TRY_STATUS(check_excess(toml_excess(text), text, file));
   try {
 #if TOML_EXCEPTIONS
     return toml::parse(text, file);

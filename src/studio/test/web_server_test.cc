@@ -180,6 +180,43 @@ TEST_F(WebServerTest, SixtyFourConnectionsAreHeldToTheLimit) {
   EXPECT_EQ(RawClient(port()).upgrade(kHeaders), 101);
 }
 
+// Ten connections every tenth of a second that say nothing once kept the owner out.
+TEST_F(WebServerTest, HalfOpenConnectionsKeepNobodyOut) {
+  std::vector<std::unique_ptr<RawClient>> silent;
+  RawClient owner(port());
+  ASSERT_EQ(owner.upgrade(kHeaders), 101);
+  for (int i = 0; i < 300; ++i) {
+    silent.push_back(std::make_unique<RawClient>(port()));
+    if (i % 3 == 0) silent.back()->send_bytes("GET / HTTP/1.1\r\nHost: loc");
+    if (i % 3 == 1) silent.back()->send_bytes("GET / HTTP/1.1\r\nHost: localhost\r\n\r\n");
+    if (i % 10 == 9) EXPECT_EQ(RawClient(port()).request("GET", "/", kHeaders), 200) << i;
+  }
+  EXPECT_TRUE(silent.front()->closed_within(1)) << "the oldest made room";
+  EXPECT_TRUE(owner.send_text("x"));
+  EXPECT_TRUE(eventually([&] { return counter_.bytes == 1; }));
+}
+
+TEST_F(WebServerTest, RequestsThatTwoReadersWouldReadTwiceAreRefused) {
+  const auto status = [&](const std::string& more) {
+    return RawClient(port()).upgrade(kHeaders + more);
+  };
+  const std::string own = "Origin: http://localhost\r\n";
+  EXPECT_EQ(status(own), 101);
+  for (const std::string& more :
+       {own + "Origin: http://evil.example\r\n", std::string("Host: localhost\r\n"),
+        std::string("Authorization: token other\r\n"), std::string("Sec-WebSocket-Key: abc\r\n"),
+        std::string("Sec-WebSocket-Version: 8\r\n")})
+    EXPECT_EQ(status(more), 400) << more;
+  RawClient bad_key(port());
+  EXPECT_EQ(bad_key.request("GET", "/ws",
+                            kHeaders + "Upgrade: websocket\r\nConnection: Upgrade\r\n"
+                                       "Sec-WebSocket-Version: 13\r\nSec-WebSocket-Key: abc\r\n"),
+            400);
+  EXPECT_EQ(
+      RawClient(port()).request("GET", "/", "Host: localhost:1\r\nAuthorization: token secret\r\n"),
+      403);
+}
+
 TEST_F(WebServerTest, StopsInTimeWithClientsThatDoNotRead) {
   std::vector<std::unique_ptr<RawClient>> clients;
   for (int i = 0; i < 8; ++i) {

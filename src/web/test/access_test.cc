@@ -12,7 +12,14 @@ const std::string kCookie = cookie_name(8080) + "=" + kToken;
 
 /// A request that is let in; tests spoil one thing.
 RequestFacts good() {
-  return {.method = "GET", .target = "/", .host = "127.0.0.1:8080", .cookie = kCookie, .hosts = 1};
+  return {.method = "GET",
+          .target = "/",
+          .host = "127.0.0.1:8080",
+          .cookie = kCookie,
+          .websocket_key = "dGhlIHNhbXBsZSBub25jZQ==",
+          .websocket_version = "13",
+          .hosts = 1,
+          .port = 8080};
 }
 Verdict verdict(const RequestFacts& request) { return judge(request, kToken, "gloam_view_8080"); }
 
@@ -94,14 +101,45 @@ TEST(Access, ForeignHostsAreRefused) {
     request.host = host;
     EXPECT_EQ(verdict(request).status, 403) << host;
   }
-  // A tunnel has a port of its own.
-  for (const char* host : {"localhost", "localhost:9000", "[::1]:8080", "127.0.0.2:1"}) {
+  for (const char* host : {"localhost", "localhost:8080", "[::1]:8080", "127.0.0.2"}) {
     RequestFacts request = good();
     request.host = host;
     EXPECT_EQ(verdict(request).status, 200) << host;
   }
+  for (const char* host : {"localhost:9000", "[::1]:80", "127.0.0.2:1", "127.0.0.1:08081"}) {
+    RequestFacts request = good();
+    request.host = host;
+    EXPECT_EQ(verdict(request).status, 403) << host;
+  }
   RequestFacts request = good();
   request.hosts = 2;
+  EXPECT_EQ(verdict(request).status, 400);
+}
+
+TEST(Access, FieldsThatDecideAreThereOnce) {
+  RequestFacts request = good();
+  request.repeated = "Origin";
+  EXPECT_EQ(verdict(request).status, 400);
+}
+
+TEST(Access, KeysOfWebSocketsAre16BytesInBase64) {
+  for (const char* key :
+       {"dGhlIHNhbXBsZSBub25jZQ==", "AAAAAAAAAAAAAAAAAAAAAA==", "/+/+/+/+/+/+/+/+/+/+/w=="})
+    EXPECT_TRUE(is_websocket_key(key)) << key;
+  for (const char* key :
+       {"", "abc",
+        "dGhlIHNhbXBsZSBub25jZQ=", "dGhlIHNhbXBsZSBub25jZR==", "dGhlIHNhbXBsZSBub25jZQAA",
+        "dGhlIHNhbXBsZSBub25j ZQ==", "dGhlIHNhbXBsZSBub25jZQ== ", "\x80GhlIHNhbXBsZSBub25jZQ=="})
+    EXPECT_FALSE(is_websocket_key(key)) << key;
+  RequestFacts request = good();
+  request.target = "/ws";
+  request.websocket = true;
+  EXPECT_EQ(verdict(request).status, 200);
+  request.websocket_key = "abc";
+  EXPECT_EQ(verdict(request).status, 400);
+  request = good();
+  request.websocket = true;
+  request.websocket_version = "8";
   EXPECT_EQ(verdict(request).status, 400);
 }
 

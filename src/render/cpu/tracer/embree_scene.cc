@@ -100,9 +100,11 @@ void set_indices(RTCGeometry geometry, const uint32_t* indices, size_t triangles
 Result<std::unique_ptr<EmbreeScene>> EmbreeScene::make() {
   RtcOwner<RTCDevice> device(rtcNewDevice(nullptr));
   if (device == nullptr) {
+    const RTCError error = rtcGetDeviceError(nullptr);
     return Error{ErrorKind::kUnsupported,
-                 fmt::format("Embree does not start (error {})",
-                             static_cast<int>(rtcGetDeviceError(nullptr)))};
+                 error == RTC_ERROR_OUT_OF_MEMORY
+                     ? "out of memory: Embree does not start"
+                     : fmt::format("Embree does not start (error {})", static_cast<int>(error))};
   }
   return std::unique_ptr<EmbreeScene>(new EmbreeBuild(std::move(device)));
 }
