@@ -106,6 +106,7 @@ class TomlScan {
 
   void read_expression() {
     skip_blanks(true);
+    if (at_ >= text_.size()) return;
     if (peek() == '[') {
       while (peek() == '[') ++at_;
       header_ = count_parts("]");

@@ -13,6 +13,7 @@
 #include "base/text.h"
 #include "base/vec.h"
 #include "gloam/result.h"
+#include "gloam/text.h"
 
 namespace gloam {
 namespace {
@@ -117,6 +118,19 @@ TEST(Text, BytesThatAreNoUtf8AreReplaced) {
   EXPECT_EQ(as_utf8("\xc0\xaf"), "\uFFFD\uFFFD") << "longer than needed";
   EXPECT_EQ(as_utf8("\xed\xa0\x80"), "\uFFFD\uFFFD\uFFFD") << "half of a surrogate pair";
   EXPECT_EQ(as_utf8("\xf4\x90\x80\x80"), "\uFFFD\uFFFD\uFFFD\uFFFD") << "beyond Unicode";
+}
+
+TEST(Text, PrintableIsShownAndNotObeyed) {
+  EXPECT_EQ(printable("plain ünï ☃ 🤖"), "plain ünï ☃ 🤖");
+  EXPECT_EQ(printable("a\x1b[31mb\a\n\r\t"), "a\\x1b[31mb\\x07\\n\\r\\t");
+  EXPECT_EQ(printable("\x7f\xc2\x9b\xe2\x80\xae\xe2\x81\xa6\xe2\x80\xa8\xd8\x9c"),
+            "\\u007f\\u009b\\u202e\\u2066\\u2028\\u061c");
+  EXPECT_EQ(printable("\x9b\xff\xc3"), "\\x9b\\xff\\xc3");
+  EXPECT_EQ(printable(std::string_view("\0", 1)), "\\x00");
+  EXPECT_EQ(printable("a\nb\x1b", "\n"), "a\nb\\x1b");
+  EXPECT_EQ(printable(printable("\x1b\x9b")), printable("\x1b\x9b")) << "once is enough";
+  const Error error{ErrorKind::kInput, "no \x1b[2J", {"a\nb", 1, 2}, "try \a"};
+  EXPECT_EQ(error.to_string(), "a\\nb:1:2: no \\x1b[2J (try \\x07)");
 }
 
 }  // namespace

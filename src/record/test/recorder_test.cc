@@ -561,6 +561,10 @@ TEST_F(RecorderTest, AfterAFailureNothingMoreIsWrittenAndNobodyWaits) {
   EXPECT_FALSE(fs::exists(run() / "chase" / "rgb" / "000059.png"));
   const nlohmann::json summary = read_json(run() / "summary.json");
   EXPECT_NE(summary["recording_error"].get<std::string>().find("No space left"), std::string::npos);
+  const auto state = summary["state"].get<std::string>();
+  EXPECT_EQ(state.substr(0, 9), "stopped: ");
+  EXPECT_NE(state.find("No space left"), std::string::npos) << state;
+  EXPECT_NE(summary["exit_reason"], "completed");
 }
 
 TEST_F(RecorderTest, ABestEffortRecorderDropsTheOldestAndNeverWaits) {

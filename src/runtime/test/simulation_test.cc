@@ -52,6 +52,35 @@ TEST(LiveSimulation, AResetWaitsAtStepZeroWithTheSameHash) {
   EXPECT_EQ(simulation->latest().hash(), at_40);
 }
 
+TEST(LiveSimulation, ResetsWithoutEndAreOneAndLeaveASaneSpeed) {
+  const TempFolder folder;
+  auto made = Simulation::create(flight(folder), {.pace = Pace::kRealTime});
+  ASSERT_TRUE(made.ok());
+  Simulation& simulation = **made;
+  simulation.resume();
+  std::this_thread::sleep_for(std::chrono::milliseconds(100));
+  std::atomic<bool> ends{false};
+  std::vector<std::thread> clients;
+  for (int i = 0; i < 2; ++i)
+    clients.emplace_back([&] {
+      while (!ends) EXPECT_TRUE(simulation.post({.what = ResetSim{}}).ok());
+    });
+  for (int i = 0; i < 50; ++i) {
+    const double factor = simulation.stats().realtime_factor;
+    EXPECT_TRUE(factor >= 0 && factor < 2) << factor;
+    std::this_thread::sleep_for(std::chrono::milliseconds(4));
+  }
+  ends = true;
+  for (std::thread& client : clients) client.join();
+  EXPECT_LT(simulation.stats().commands_applied, 100) << "a reset every 10 ms at most";
+  simulation.pause();  // at rest each one counts
+  for (int i = 0; i < 3; ++i) {
+    ASSERT_TRUE(simulation.step(2).ok());
+    ASSERT_TRUE(simulation.post({.what = ResetSim{}}).ok());
+    EXPECT_EQ(simulation.latest().step(), 0);
+  }
+}
+
 TEST(LiveSimulation, AStopFromOutsideEndsAnEndlessRun) {
   const TempFolder folder;
   auto simulation = simulate(flight(folder));

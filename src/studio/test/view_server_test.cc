@@ -158,6 +158,31 @@ TEST_F(ViewTest, AClientIsGreetedAndSeesPictures) {
   EXPECT_EQ((*state)["hash"].get<std::string>().size(), 16u);
 }
 
+/// Width of a picture, from the frame header of its JPEG (ITU T.81, B.2.2).
+int width_of(const std::string& picture) {
+  const size_t frame = picture.find("\xff\xc0", kPictureHeaderSize);
+  if (frame == std::string::npos || frame + 9 > picture.size()) return 0;
+  return 256 * static_cast<uint8_t>(picture[frame + 7]) + static_cast<uint8_t>(picture[frame + 8]);
+}
+
+TEST(ViewPreview, ASmallPictureComesBeforeTheFirst) {
+  FakeSimulation simulation;
+  const auto server = ViewServer::start(simulation, {.port = 0, .width = 320, .height = 240});
+  ASSERT_TRUE(server.ok());
+  const std::string url = (*server)->url();
+  RawClient client((*server)->port());
+  ASSERT_EQ(client.upgrade("Host: localhost\r\nAuthorization: token " +
+                           url.substr(url.find("token=") + 6) + "\r\n"),
+            101);
+  std::vector<int> widths;
+  while (widths.empty() || widths.back() < 320) {
+    const auto picture = client.wait_for_picture();
+    ASSERT_TRUE(picture.has_value());
+    widths.push_back(width_of(*picture));
+  }
+  EXPECT_EQ(widths.front(), 80);
+}
+
 TEST_F(ViewTest, PicturesAreNewAndInOrder) {
   simulation_.resume();
   const auto client = join();

@@ -189,7 +189,8 @@ TEST_F(WebServerTest, HalfOpenConnectionsKeepNobodyOut) {
     silent.push_back(std::make_unique<RawClient>(port()));
     if (i % 3 == 0) silent.back()->send_bytes("GET / HTTP/1.1\r\nHost: loc");
     if (i % 3 == 1) silent.back()->send_bytes("GET / HTTP/1.1\r\nHost: localhost\r\n\r\n");
-    if (i % 10 == 9) EXPECT_EQ(RawClient(port()).request("GET", "/", kHeaders), 200) << i;
+    if (i % 10 != 9) continue;
+    EXPECT_EQ(RawClient(port()).request("GET", "/", kHeaders), 200) << i;
   }
   EXPECT_TRUE(silent.front()->closed_within(1)) << "the oldest made room";
   EXPECT_TRUE(owner.send_text("x"));
