@@ -2,29 +2,26 @@
 
 #include "base/hash.h"
 #include "base/rng.h"
+#include "sim/agents/gait_curves.h"
 
 namespace gloam {
 namespace {
 
 constexpr double kDegree = M_PI / 180;
-constexpr double kUsualSpeed = 1.3;      // speed that amplitudes are given for [m/s]
-constexpr double kWalkRatio = 0.0063;    // step length / cadence of people of 1.7 m [m min]
-constexpr double kSlowestCadence = 1.2;  // [1/s]
-constexpr double kStrikePitch = 17 * kDegree, kPushPitch = 36 * kDegree;
-constexpr double kToe = 0.7, kHeel = 0.22;        // pivots from the ankle, fractions of the foot
+constexpr double kUsualSpeed = 1.3;         // speed that amplitudes are given for [m/s]
+constexpr double kWalkRatio = 0.0063;       // step length / cadence of people of 1.7 m [m min]
+constexpr double kSlowestCadence = 1.2;     // [1/s]
+constexpr double kToe = 0.7, kHeel = 0.22;  // pivots from the ankle, fractions of the foot
 constexpr double kStands = 0.06, kStarts = 0.09;  // [m/s]
-// Fraction of the way in stance by which a foot comes down ahead of the hips.
-constexpr double kWalkerAhead = 0.42;
-constexpr double kKnee = 0.025;   // descent of the hips by knees bent in mid-stance at 1.3 m/s [m]
-constexpr double kReach = 0.997;  // fraction of a leg's length: a knee is never quite straight
+constexpr double kReach = 0.9995;  // fraction of a leg's length: a knee is never quite straight
+constexpr double kStandingKnee = 0.002;  // descent of the hips while standing, of their height
+constexpr double kBobTime = 0.03;        // in which the hips follow [s]
+constexpr double kUsualHeight = 1.7;     // height of a person that curves are given for [m]
+constexpr double kUsualHips = 0.901;     // height of the hips of that person [m]
 
 double follow(double value, double target, double dt, double time) {
   return value + (target - value) * (1 - std::exp(-dt / time));
 }
-
-// Progress of a swinging foot: it is pushed off at 0.6 times its mean speed, is never faster than
-// 1.4 times that, and comes down at rest.
-double swing_profile(double u) { return u * (0.6 + u * (1.8 - 1.4 * u)); }
 
 }  // namespace
 
@@ -33,15 +30,27 @@ Walker::Walker(const PersonShape& shape, uint64_t seed)
       idle_phase_(2 * M_PI * RandomStream{seed, stream_id("agent.idle")}.uniform(0, 0)) {}
 
 double Walker::cadence(double speed) const {
-  const double ratio = kWalkRatio * shape_.height / 1.7;
+  const double ratio = kWalkRatio * shape_.height / kUsualHeight;
   return std::max(std::sqrt(60 * speed / ratio) / 60, kSlowestCadence);
 }
 
-double Walker::stance_share(double speed) { return std::clamp(0.76 - 0.1 * speed, 0.58, 0.72); }
+double Walker::stance_share(double speed) { return std::clamp(0.745 - 0.1 * speed, 0.58, 0.72); }
 
 double Walker::phase_of(int foot) const {
   const double phase = state_.phase + 0.5 * foot;
   return phase - std::floor(phase);
+}
+
+// The phase at which a foot does at 1.3 m/s what it does at `phase` now.
+double Walker::in_usual_cycle(double phase) const {
+  if (phase < state_.stance) return phase / state_.stance * gait::kStance;
+  return gait::kStance + (phase - state_.stance) / (1 - state_.stance) * (1 - gait::kStance);
+}
+
+// Length of a step over that of gait_curves.h, for someone of this size.
+double Walker::usual_steps() const {
+  const double size = shape_.hip_height / kUsualHips;
+  return state_.speed / cadence(state_.speed) / (gait::kStep * size);
 }
 
 bool Walker::is_planted(int foot) const {
@@ -97,7 +106,7 @@ void Walker::aim(const WalkInput& in, int foot, double rate, const GroundHeight&
   const Vec3d ahead{c * v.x - s * v.y, s * v.x + c * v.y, 0};
   WalkInput then = in;
   then.heading = in.heading + turn + 0.5 * std::clamp(in.yaw_rate * stand, -0.6, 0.6);
-  then.p = in.p + ahead * (left + (speed > kStands ? kWalkerAhead * stand : 0));
+  then.p = in.p + ahead * (left + (speed > kStands ? gait::kAhead * stand : 0));
   f.to = neutral(then, foot);
   f.to.z = ground.at(f.to);
   f.to_yaw = f.from_yaw + wrapped(then.heading - f.from_yaw);
@@ -122,10 +131,10 @@ void Walker::advance(double dt, const WalkInput& in, const GroundHeight& ground)
     if (!swung && swings) f.from = f.p, f.from_yaw = f.yaw;
     if (!swings) continue;
     aim(in, i, rate, ground);
-    const double u = (phase - state_.stance) / (1 - state_.stance), t = swing_profile(u);
-    const double lift = 0.035 + 0.02 * state_.speed + 0.6 * std::abs(f.to.z - f.from.z);
+    const double u = (phase - state_.stance) / (1 - state_.stance), t = gait::swing_progress(u);
+    const double climb = 0.8 * std::abs(f.to.z - f.from.z);
     f.p = f.from + (f.to - f.from) * t;
-    f.p.z += lift * 4 * u * (1 - u) * (u < 0.5 ? 1 : 4 * u * (1 - u));
+    f.p.z += gait::swing_lift(u) + climb * 4 * u * (1 - u) * (u < 0.5 ? 1 : 4 * u * (1 - u));
     f.yaw = f.from_yaw + (f.to_yaw - f.from_yaw) * t;
   }
 }
@@ -147,14 +156,12 @@ void Walker::step(double dt, const WalkInput& in, const GroundHeight& ground) {
   for (int i = 0; i < 2; ++i)
     if (is_planted(i)) low += state_.feet[i].p.z, ++count;
   state_.ground = follow(state_.ground, count > 0 ? low / count : in.p.z, dt, 0.12);
-  // Peak to peak, 0.6 of what a compass of straight legs would have.
-  const double step_length = state_.speed / cadence(state_.speed), leg = shape_.hip_height;
-  const double bob = state_.activity * 0.6 * step_length * step_length / (8 * leg);
-  const double mid = state_.phase - state_.stance / 2;
-  const double knees = kKnee * state_.activity * std::min(state_.speed / kUsualSpeed, 1.4);
+  const double size = shape_.hip_height / kUsualHips, step = usual_steps();
+  const double lead = kBobTime * cadence(state_.speed) / 2;
+  const double walks = gait::kKneeDescent + step * step * gait::hip_descent(state_.phase + lead);
   const double down =
-      0.012 * shape_.hip_height + knees + 0.5 * bob * (1 - std::cos(4 * M_PI * mid));
-  state_.bob = follow(state_.bob, down, dt, 0.03);
+      kStandingKnee * shape_.hip_height * (1 - state_.activity) + walks * size * state_.activity;
+  state_.bob = follow(state_.bob, down, dt, kBobTime);
   const Vec3d ahead = heading_vector(in.heading), left{-ahead.y, ahead.x, 0};
   const Vec3d tilt = in.acceleration * 0.045 + in.push * 0.25;
   const double forward = (1.5 + 2.5 * state_.speed / kUsualSpeed) * kDegree;
@@ -163,26 +170,22 @@ void Walker::step(double dt, const WalkInput& in, const GroundHeight& ground) {
   state_.lean[1] = follow(state_.lean[1], std::clamp(dot(tilt, left), -0.25, 0.25), dt, 0.15);
 }
 
-// Heel up is positive.
+// Heel up is positive. It grows with speed as the pitch of Schwartz et al. 2008, "The effect of
+// walking speed on the gait of typically developing children", does from 0.6 to 2 m/s.
 double Walker::pitch_of(int foot) const {
   if (state_.is_stepping == 0) return 0;
-  const double much = state_.activity * std::min(state_.speed / kUsualSpeed, 1.25);
-  const double strike = kStrikePitch * std::min(much, 1.0), push = kPushPitch * much;
-  const double phase = phase_of(foot);
-  if (phase < state_.stance) {
-    const double s = phase / state_.stance;
-    if (s < 0.14) return -strike * (1 - smooth_step(s / 0.14));
-    return push * smooth_step((s - 0.55) / 0.45);
-  }
-  const double u = (phase - state_.stance) / (1 - state_.stance);
-  return push * (1 - smooth_step(u / 0.55)) - strike * smooth_step((u - 0.5) / 0.45);
+  const double pitch = gait::foot_pitch(in_usual_cycle(phase_of(foot)));
+  const double much = std::pow(usual_steps(), 1.2);
+  return pitch * state_.activity * std::min(much, pitch > 0 ? 1.08 : 1.0);
 }
 
-// A foot turns about its toes or its heel, whichever is on the ground.
+// A foot that stands turns about its toes or its heel, whichever is on the ground.
 PartPose Walker::foot_pose(int foot) const {
   const Foot& f = state_.feet[foot];
   const double pitch = pitch_of(foot);
-  const double pivot = (pitch > 0 ? kToe : -kHeel) * shape_.foot;
+  const double phase = phase_of(foot), u = (phase - state_.stance) / (1 - state_.stance);
+  const double stands = pitch > 0 ? gait::kToe : gait::kHeel;
+  const double pivot = (is_planted(foot) ? stands : gait::swing_pivot(u)) * shape_.foot;
   const Quat q = turn_z(f.yaw) * turn_y(pitch);
   const Vec3d at = f.p + heading_vector(f.yaw) * pivot;
   return {at + rotated(q, {-pivot, 0, shape_.ankle}), q};

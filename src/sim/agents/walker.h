@@ -3,8 +3,9 @@
 //
 // Cadence and step length grow alike with speed (a constant walk ratio: Sekiya and Nagasaki 1998).
 // The fraction of stance falls with speed (Murray 1967, Nilsson et al. 1985). The hips rise and
-// fall as step length requires (Gard and Childress 2001). Angles of pelvis, trunk and arms are
-// those of Perry and Burnfield 2010 at 1.3 m/s, less when slower.
+// fall as step length requires (Gard and Childress 2001). Hips, knees and ankles turn as in
+// gait_curves.h, pelvis, trunk and arms as in Perry and Burnfield 2010 at 1.3 m/s, less when
+// slower.
 
 #include <array>
 
@@ -75,6 +76,8 @@ class Walker {
     int64_t is_stepping = 0;
   };
   double phase_of(int foot) const;
+  double in_usual_cycle(double phase) const;
+  double usual_steps() const;
   Vec3d neutral(const WalkInput& in, int foot) const;
   double error_of(const WalkInput& in, int foot) const;
   void begin_step(const WalkInput& in);

@@ -64,8 +64,6 @@ class Effect {
   virtual bool acts_on_bodies() const { return false; }
   /// Sets options of the model for a step from this state. Also before forward passes.
   virtual void set_options(const EffectContext&) {}
-  /// Before the first half of a step.
-  virtual void prepare_step(const EffectContext&) {}
   /// Poses and velocities are known: adds forces to data.qfrc_applied, inertia to the model.
   virtual void apply_forces(const EffectContext&) {}
   /// Inertia is known, too: adds forces that depend on it, and loads to the events.

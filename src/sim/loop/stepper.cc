@@ -286,7 +286,6 @@ void Stepper::step_in_halves() {
   EffectContext at = context(step_);
   at.is_halved = has_halves(*m);
   if (at.is_halved) {
-    for (const auto& effect : effects_) effect->prepare_step(at);
     mj_step1(m, d);
   } else {
     mj_kinematics(m, d);

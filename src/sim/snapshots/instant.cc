@@ -2,11 +2,14 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <optional>
+#include <vector>
 
 #include "scene/files/mujoco_guard.h"
 #include "sim/commands/live_fields.h"
 #include "sim/commands/model_fields.h"
+#include "sim/effects/wind/air_drag.h"
 #include "sim/effects/wind/wind.h"
 #include "sim/loop/step_schedule.h"
 #include "sim/loop/stepper.h"
@@ -26,12 +29,14 @@ struct Instant::Solved {
   uint64_t live_serial = 0;
   DataPtr data, scratch;
   std::optional<WindOnBodies> wind;  // wind of steps as long as wind_timestep, if it blows
+  std::optional<AirDrag> drag;       // none: MuJoCo's own
   double wind_timestep = 0;
   bool good = false;  // the last forward pass was
 
   Status begin(const SnapshotData& in);
   Status follow_live_fields(const SnapshotData& in);
   void blow(const SnapshotData& in);
+  void add_drag();
 
   template <class Kind>
   Status check(Handle<Kind> handle, mjtSize count) const {
@@ -56,7 +61,9 @@ Status Instant::Solved::begin(const SnapshotData& in) {
   scratch.reset();
   live_serial = 0;
   wind.reset();
+  drag.reset();
   model = *world->model;
+  if (world->wind.blows() && !has_own_drag(model)) drag.emplace(model);
   mjData* made = nullptr;
   GLOAM_TRY_STATUS(guarded([&] { made = mj_makeData(world->model.get()); }));
   data.reset(made);
@@ -81,6 +88,7 @@ Status Instant::Solved::follow_live_fields(const SnapshotData& in) {
         write_live_field(*world->model, static_cast<LiveFieldId>(f), values, *copy, scratch.get()));
   }
   model = *copy;
+  if (drag) drag->measure(model);
   live_serial = serial;
   return {};
 }
@@ -89,13 +97,22 @@ Status Instant::Solved::follow_live_fields(const SnapshotData& in) {
 void Instant::Solved::blow(const SnapshotData& in) {
   const auto field = static_cast<size_t>(LiveFieldId::kWind);
   if (!world->wind.blows()) return;
-  give_air(&model.opt);
+  if (!drag) give_air(&model.opt);
   if (in.live != nullptr && !in.live->values[field].empty()) return;
   if (!wind || wind_timestep != in.timestep) {
     wind.emplace(*world, exact_rational(in.timestep));
     wind_timestep = in.timestep;
   }
   wind->blow(in.step, data->qpos, &model.opt);
+}
+
+// Accelerations again, with the drag of the wind among the forces from outside.
+void Instant::Solved::add_drag() {
+  if (!drag) return;
+  const std::vector<double> others(data->qfrc_applied, data->qfrc_applied + model.nv);
+  drag->push(model, *data);
+  mj_forwardSkip(&model, data.get(), mjSTAGE_VEL, 0);
+  std::copy(others.begin(), others.end(), data->qfrc_applied);
 }
 
 Instant::Instant() : solved_(std::make_unique<Solved>()) {}
@@ -117,6 +134,7 @@ Status Instant::solve(const Snapshot& snapshot) {
     mj_setState(model, data, in.state.data(), mjSTATE_INTEGRATION);
     s.blow(in);
     mj_forward(model, data);
+    s.add_drag();
     // Quantities that a forward pass computes only if a sensor asks for them.
     mj_energyPos(model, data);
     mj_energyVel(model, data);

@@ -113,9 +113,9 @@ TEST(WaterFloats, EveryShapeDisplacesItsVolume) {
   for (const Case& c : cases) {
     auto world = world_with_water(body(c.geom), calm_water(), "", c.asset);
     for (const int count : {216, 1000}) {
-      const WaterShape shape = *water_shape(*world->model, 0, count);
+      const ImmersedShape shape = *immersed_shape(*world->model, 0, count);
       double sum = 0;
-      for (const WaterElement& e : shape.elements) sum += e.volume;
+      for (const VolumeElement& e : shape.elements) sum += e.volume;
       EXPECT_NEAR(sum, c.volume, 0.006 * c.volume) << c.geom << ", " << count << " elements";
     }
   }
@@ -127,19 +127,20 @@ TEST(WaterFloats, ElementsConverge) {
       world_with_water(body("type='capsule' size='.2 .3' quat='.9 .3 .2 .1'"), calm_water());
   const mjModel& m = *world->model;
   const double n[3] = {0.36, 0.48, 0.8};
-  const auto under = [&](const WaterShape& s, double level) {
+  const auto under = [&](const ImmersedShape& s, double level) {
     double cell = 0, volume = 0;
     for (int a = 0; a < 3; ++a) cell += n[a] * s.cell[a];
-    for (const WaterElement& e : s.elements)
+    for (const VolumeElement& e : s.elements)
       volume += e.volume * std::clamp((level - mju_dot3(n, e.p)) / cell + 0.5, 0.0, 1.0);
     return volume / s.volume;
   };
-  const WaterShape fine = *water_shape(m, 0, 100000);
+  const ImmersedShape fine = *immersed_shape(m, 0, 100000);
   double errors[2] = {};
   for (double level = -0.4; level < 0.4; level += 0.01) {
     for (int i = 0; i < 2; ++i)
-      errors[i] = std::max(errors[i], std::abs(under(*water_shape(m, 0, i == 0 ? 27 : 216), level) -
-                                               under(fine, level)));
+      errors[i] = std::max(
+          errors[i],
+          std::abs(under(*immersed_shape(m, 0, i == 0 ? 27 : 216), level) - under(fine, level)));
   }
   EXPECT_LT(errors[1], 0.01) << "of the whole volume, with 216 elements";
   EXPECT_LT(errors[1], errors[0]);
@@ -173,7 +174,7 @@ TEST(WaterFloats, TheRightingMomentIsThatOfTheMetacentre) {
   auto world = world_with_water(body("type='box' size='.5 1 .2' density='500'"), calm_water());
   mjModel* m = world->model.get();
   DataPtr d(mj_makeData(m));
-  const std::vector<WaterShape> shapes = water_shapes(*m);
+  const std::vector<ImmersedShape> shapes = immersed_shapes(*m);
   WaterForces forces(*m, world->waters, shapes);
   const HeightChange still;
   for (const double heel : {0.02, 0.05, 0.1}) {
@@ -202,7 +203,7 @@ TEST(WaterFloats, ACylinderHeavesWithItsPeriod) {
   const double r = 0.5, half = 0.2, draught = 0.2;
   auto world = world_with_water(body("type='cylinder' size='.5 .2' density='500'", "pos='0 0 .02'"),
                                 calm_water());
-  const WaterShape shape = *water_shape(*world->model, 0);
+  const ImmersedShape shape = *immersed_shape(*world->model, 0);
   Floating disk(std::move(world));
   double before = disk.z(), first = -1, last = -1;
   int periods = -1;
@@ -229,11 +230,11 @@ TEST(WaterFloats, ACylinderHeavesWithItsPeriod) {
 TEST(WaterFloats, AddedMassIsLambs) {
   auto added = [](const char* geom) {
     auto world = world_with_water(body(geom), calm_water());
-    return *water_shape(*world->model, 0, 4000);
+    return *immersed_shape(*world->model, 0, 4000);
   };
   for (const double a : added("type='sphere' size='.3'").added) EXPECT_NEAR(a, 0.5, 0.01);
   // A prolate spheroid of 2 to 1: 0.2100 along, 0.7024 across (Lamb 1932, article 115).
-  const WaterShape egg = added("type='ellipsoid' size='.1 .1 .2'");
+  const ImmersedShape egg = added("type='ellipsoid' size='.1 .1 .2'");
   EXPECT_NEAR(egg.added[2], 0.21, 0.01);
   EXPECT_NEAR(egg.added[0], 0.702, 0.01);
   EXPECT_NEAR(egg.added_inertia[2], 0, 1e-6 * egg.volume);
@@ -244,14 +245,16 @@ TEST(WaterFloats, AddedMassIsLambs) {
 TEST(WaterFloats, ABallRisesWithItsAddedMassAndEndsAtItsTerminalSpeed) {
   const double r = 0.1, volume = 4.0 / 3 * kTurn * r * r * r, mass = 100 * volume;
   WaterOptions deep = calm_water(20, 100);
-  Floating ball(
-      world_with_water(body("type='sphere' size='.1' density='100'", "pos='0 0 -90'"), deep));
-  ball.run(0.002);
-  const double start = ball.joint().qvel[2] / 0.002;
-  EXPECT_NEAR(start, (kRho * volume - mass) * kG / (mass + kRho * volume / 2), 0.02 * start);
-  ball.run(5);
-  const double end = std::sqrt(2 * (kRho * volume - mass) * kG / (kRho * 0.47 * kTurn * r * r));
-  EXPECT_NEAR(ball.joint().qvel[2], end, 0.03 * end);
+  for (const char* attitude : {"1 0 0 0", ".6 .3 -.5 .55"}) {
+    const std::string pose = fmt::format("pos='0 0 -90' quat='{}'", attitude);
+    Floating ball(world_with_water(body("type='sphere' size='.1' density='100'", pose), deep));
+    ball.run(0.002);
+    const double start = ball.joint().qvel[2] / 0.002;
+    EXPECT_NEAR(start, (kRho * volume - mass) * kG / (mass + kRho * volume / 2), 0.02 * start);
+    ball.run(5);
+    const double end = std::sqrt(2 * (kRho * volume - mass) * kG / (kRho * 0.47 * kTurn * r * r));
+    EXPECT_NEAR(ball.joint().qvel[2], end, 0.03 * end) << attitude;
+  }
 }
 
 TEST(WaterFloats, BallsSinkByStokesLaw) {

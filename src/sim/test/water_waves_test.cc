@@ -152,7 +152,7 @@ WaterDescription pond() {
 void splash(WaterRipples* ripples, const WaterDescription& water, double x, double y) {
   auto world = world_from_mjcf(
       "<mujoco><worldbody><body><freejoint/><geom size='.2'/></body></worldbody></mujoco>");
-  const WaterShape shape = *water_shape(*world->model, 0);
+  const ImmersedShape shape = *immersed_shape(*world->model, 0);
   const double R[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
   for (int i = 0; i < 20; ++i) {
     const double p[3] = {x, y, 0.2 - 0.02 * i};

@@ -59,14 +59,10 @@ void add_velocity(const GasDescription& gas, const std::vector<float>& velocity,
   }
 }
 
-struct Fluid {
-  double density, viscosity;  // [kg/m³], [Pa s]
-};
-
 // Air of a gas at the temperature of its surroundings.
 Fluid air_of(const mjOption& option) {
-  if (option.density > 0 || option.viscosity > 0) return {option.density, option.viscosity};
-  return {kAirDensity, kAirViscosity};
+  const Fluid own{option.density, option.viscosity};
+  return own.fills_space() ? own : kAir;
 }
 
 // MuJoCo's drag on a box of half edges `half` that moves at `v` [m/s] through a fluid, in its axes.
@@ -84,6 +80,8 @@ void add_drag(const double* half, const double* v, Fluid fluid, double scale, do
 GasForces::GasForces(const CompiledWorld& world, Rational timestep)
     : gases_(world.gases.gases),
       model_(*world.model),
+      blows_(world.wind.blows()),
+      is_mujocos_(has_own_drag(model_)),
       looks_(StepSchedule::at_most(kLookRate, timestep)) {
   const mjModel& m = model_;
   std::vector<bool> moves(static_cast<size_t>(m.nbody));
@@ -91,11 +89,17 @@ GasForces::GasForces(const CompiledWorld& world, Rational timestep)
     const auto parent = static_cast<size_t>(m.body_parentid[b]);
     moves[static_cast<size_t>(b)] = m.body_dofnum[b] > 0 || moves[parent];
   }
+  if (!is_mujocos_) parts_ = drag_parts(m);
+  size_t part = 0;
   const std::vector<Affine3f> X_WB = body_poses_at_qpos0(m);
   for (int b = 1; b < static_cast<int>(m.nbody); ++b) {
     if (!moves[static_cast<size_t>(b)] || m.body_mass[b] < kLeastMass) continue;
     ExposedBody exposed;
     exposed.body = b;
+    while (part < parts_.size() && parts_[part].body < b) ++part;
+    exposed.from = part;
+    while (part < parts_.size() && parts_[part].body == b) ++part;
+    exposed.to = part;
     const mjtNum* inertia = m.body_inertia + 3 * b;
     for (int a = 0; a < 3; ++a) {
       const double square = inertia[(a + 1) % 3] + inertia[(a + 2) % 3] - inertia[a];
@@ -145,46 +149,74 @@ void GasForces::look(int row, const mjModel& m, const mjData& d, const MediumFie
   }
 }
 
+// Air around a body that is in no gas.
+Fluid GasForces::outside(const mjModel& m) const {
+  if (!is_mujocos_) return blows_ ? kAir : Fluid{};
+  return {m.opt.density, m.opt.viscosity};
+}
+
 // Greatest acceleration that air can give a body at its present speed [m/s²].
-double GasForces::most_push(const mjModel& m, const mjData& d, const ExposedBody& exposed) {
-  const mjOption& option = m.opt;
-  const Fluid air = air_of(option);
+double GasForces::most_push(const mjModel& m, const mjData& d, const ExposedBody& exposed) const {
+  const Fluid air = air_of(m.opt);
   double twist[6];
   mj_objectVelocity(&m, &d, mjOBJ_BODY, exposed.body, twist, 0);
   double fast = mju_dist3(twist + 3, exposed.wind), square = fast * fast;
-  if (option.density > 0 || option.viscosity > 0) {
-    const double own = mju_dist3(twist + 3, option.wind);
-    fast = mju_dist3(exposed.wind, option.wind);
+  if (outside(m).fills_space()) {
+    const double own = mju_dist3(twist + 3, m.opt.wind);
+    fast = mju_dist3(exposed.wind, m.opt.wind);
     square = fast * (fast + 2 * own) + std::abs(1 - exposed.thinness) * own * own;
   }
   const double edges = 2 * (exposed.half[0] + exposed.half[1] + exposed.half[2]);
-  return (air.density / 2 * exposed.area * square +
-          std::numbers::pi * edges * air.viscosity * fast) /
+  double area = is_mujocos_ ? exposed.area : 0;
+  for (size_t n = exposed.from; n < exposed.to; ++n)
+    area += *std::max_element(parts_[n].face, parts_[n].face + 3);
+  return (air.density / 2 * area * square + std::numbers::pi * edges * air.viscosity * fast) /
          m.body_mass[exposed.body];
 }
 
-void GasForces::push(const mjModel& m, mjData& d) {
-  const mjOption& option = m.opt;
-  const Fluid own{option.density, option.viscosity}, air = air_of(option);
+void GasForces::push(const mjModel& m, mjData& d) const {
   for (const ExposedBody& exposed : exposed_) {
     if (exposed.gas < 0) continue;
-    const double* R = d.ximat + 9 * exposed.body;
-    double twist[6], past[3], past_own[3], force[3] = {}, force_W[3];
-    mj_objectVelocity(&m, &d, mjOBJ_BODY, exposed.body, twist, 0);
-    mju_sub3(past, twist + 3, exposed.wind);
-    const double speed = mju_norm3(past);
-    mju_mulMatTVec3(past_own, R, past);
-    add_drag(exposed.half, past_own, {air.density * exposed.thinness, air.viscosity}, 1, force);
-    const double most = kMostPerStep * m.body_mass[exposed.body] * speed / option.timestep;
-    const double drag = mju_norm3(force);
-    if (drag > most) mju_scl3(force, force, most / drag);
-    mju_sub3(past, twist + 3, option.wind);
-    mju_mulMatTVec3(past_own, R, past);
-    add_drag(exposed.half, past_own, own, -1, force);
-    mju_mulMatVec3(force_W, R, force);
-    constexpr double kNoTorque[3] = {};
-    add_wrench(m, d, exposed.body, force_W, kNoTorque, d.xipos + 3 * exposed.body);
+    if (is_mujocos_) push_box(m, d, exposed);
+    for (size_t n = exposed.from; n < exposed.to; ++n) push_part(m, d, exposed, parts_[n]);
   }
+}
+
+void GasForces::push_part(const mjModel& m, mjData& d, const ExposedBody& exposed,
+                          const DragPart& part) const {
+  const Fluid own = outside(m);
+  double p[3], v[3], past[3], force[3] = {}, less[3] = {};
+  part.place(d, p);
+  velocity_at(m, d, part.body, p, v);
+  mju_sub3(past, v, exposed.wind);
+  part.add_force(d, past, {kAir.density * exposed.thinness, kAir.viscosity}, m.opt.timestep, force);
+  if (own.fills_space()) {
+    mju_sub3(past, v, m.opt.wind);
+    part.add_force(d, past, own, m.opt.timestep, less);
+    mju_subFrom3(force, less);
+  }
+  constexpr double kNoTorque[3] = {};
+  add_wrench(m, d, part.body, force, kNoTorque, p);
+}
+
+void GasForces::push_box(const mjModel& m, mjData& d, const ExposedBody& exposed) const {
+  const Fluid own = outside(m), air = air_of(m.opt);
+  const double* R = d.ximat + 9 * exposed.body;
+  double twist[6], past[3], past_own[3], force[3] = {}, force_W[3];
+  mj_objectVelocity(&m, &d, mjOBJ_BODY, exposed.body, twist, 0);
+  mju_sub3(past, twist + 3, exposed.wind);
+  const double speed = mju_norm3(past);
+  mju_mulMatTVec3(past_own, R, past);
+  add_drag(exposed.half, past_own, {air.density * exposed.thinness, air.viscosity}, 1, force);
+  const double most = kMostPerStep * m.body_mass[exposed.body] * speed / m.opt.timestep;
+  const double drag = mju_norm3(force);
+  if (drag > most) mju_scl3(force, force, most / drag);
+  mju_sub3(past, twist + 3, m.opt.wind);
+  mju_mulMatTVec3(past_own, R, past);
+  add_drag(exposed.half, past_own, own, -1, force);
+  mju_mulMatVec3(force_W, R, force);
+  constexpr double kNoTorque[3] = {};
+  add_wrench(m, d, exposed.body, force_W, kNoTorque, d.xipos + 3 * exposed.body);
 }
 
 }  // namespace gloam

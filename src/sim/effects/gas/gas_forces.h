@@ -1,17 +1,19 @@
 #pragma once
 // Forces of the air of gases on bodies, on the sim thread: drag by the air's velocity at the body.
 //
-// The law is MuJoCo's own model of a fluid, which has one air for all bodies: rho/2 A |v| v along
-// each axis of the box of equal inertia, and Stokes' drag. In a model that has a fluid each body
-// gets the difference between the drag in its gas and in MuJoCo's fluid, so that nothing changes
-// where the two are the same. The air is that of the last tick, up to an interval old; hot air is
-// thinner by T0/T. Left out: torques, and bodies to which air can give less than kLeastPush.
+// The law is that of the drag which acts outside of gases (body_drag.h): by the shapes of
+// colliders, or in a model with a fluid of its own that of MuJoCo's, rho/2 A |v| v along each axis
+// of the box of equal inertia and Stokes' drag. Each body gets the difference between the drag in
+// its gas and in the fluid or wind outside, so that nothing changes where the two are the same. The
+// air is that of the last tick, up to an interval old; hot air is thinner by T0/T. Left out:
+// torques, and bodies to which air can give less than kLeastPush.
 
 #include <mujoco/mujoco.h>
 
 #include <vector>
 
 #include "instant/medium_field.h"
+#include "sim/effects/bodies/body_drag.h"
 #include "sim/loop/step_schedule.h"
 #include "world/world.h"
 
@@ -43,7 +45,8 @@ class GasForces {
   // A body that moves, and the air around it.
   struct ExposedBody {
     int body = 0;
-    double half[3] = {};  // half sides of its box [m]
+    double half[3] = {};      // half sides of the box of equal inertia [m]
+    size_t from = 0, to = 0;  // parts of it; none in a fluid of the model's own
     // Reach of the rotors of its tree around the tree's centre, 0 = it has none [m]
     double reach = 0;
     double area = 0;      // area of the largest side of the box [m²]
@@ -52,11 +55,18 @@ class GasForces {
     double thinness = 1;  // T0 / T
   };
   void look(int row, const mjModel& model, const mjData& data, const MediumField& field);
-  static double most_push(const mjModel& model, const mjData& data, const ExposedBody& exposed);
-  void push(const mjModel& model, mjData& data);
+  double most_push(const mjModel& model, const mjData& data, const ExposedBody& exposed) const;
+  void push(const mjModel& model, mjData& data) const;
+  void push_box(const mjModel& model, mjData& data, const ExposedBody& exposed) const;
+  void push_part(const mjModel& model, mjData& data, const ExposedBody& exposed,
+                 const DragPart& part) const;
+  Fluid outside(const mjModel& model) const;
 
   const std::vector<GasDescription>& gases_;
   const mjModel& model_;
+  const bool blows_;       // wind does, outside
+  const bool is_mujocos_;  // law of MuJoCo's own fluid
+  std::vector<DragPart> parts_;
   StepSchedule looks_;
   int64_t next_look_ = 0;
   std::vector<ExposedBody> exposed_;

@@ -19,7 +19,7 @@ WaterEffect::WaterEffect(std::shared_ptr<const CompiledWorld> world, Rational ti
     : world_(std::move(world)),
       schedule_(schedule),
       timestep_(timestep.value()),
-      shapes_(water_shapes(*world_->model)),
+      shapes_(immersed_shapes(*world_->model)),
       forces_(*world_->model, waters(), shapes_),
       changes_(waters().size()) {
   // Ticks fall on whole steps, so that one may be a step longer than the rate says.
@@ -71,7 +71,7 @@ void WaterEffect::advance_ripples(const mjData& data) {
   for (size_t i = 0; i < ripples_.size(); ++i) {
     if (ripples_[i] == nullptr) continue;
     const WaterDescription& water = waters()[i];
-    for (const WaterShape& shape : shapes_) {
+    for (const ImmersedShape& shape : shapes_) {
       if (!forces_.is_near(i, shape, data)) continue;
       const double* p = data.geom_xpos + 3 * shape.geom;
       const double surface = water.level + wave_height(water, p[0], p[1], data.time);

@@ -39,7 +39,7 @@ class WaterEffect final : public Effect {
   const std::shared_ptr<const CompiledWorld> world_;
   const StepSchedule schedule_;
   const double timestep_;  // [s]
-  const std::vector<WaterShape> shapes_;
+  const std::vector<ImmersedShape> shapes_;
   WaterForces forces_;
   std::vector<std::unique_ptr<WaterRipples>> ripples_;  // ripples of each water, null = none
   std::vector<HeightChange> changes_;                   // scratch, of each water

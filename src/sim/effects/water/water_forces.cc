@@ -15,7 +15,7 @@ constexpr double kRippleCrest = 0.3;  // [m]
 
 // One collider in a water. All in the geom's frame about its origin, but for what has a W.
 struct WaterForces::Wet {
-  const WaterShape& shape;
+  const ImmersedShape& shape;
   const WaterDescription& water;
   const double *p, *R;           // X_WG
   double v[3], v_W[3], turn[3];  // its motion through the water [m/s], [rad/s]
@@ -29,7 +29,7 @@ struct WaterForces::Wet {
 };
 
 WaterForces::WaterForces(const mjModel& model, const std::vector<WaterDescription>& waters,
-                         const std::vector<WaterShape>& shapes)
+                         const std::vector<ImmersedShape>& shapes)
     : waters_(waters),
       shapes_(shapes),
       armature_(static_cast<size_t>(model.nv)),
@@ -41,7 +41,7 @@ WaterForces::WaterForces(const mjModel& model, const std::vector<WaterDescriptio
   }
 }
 
-bool WaterForces::is_near(size_t water, const WaterShape& shape, const mjData& data) const {
+bool WaterForces::is_near(size_t water, const ImmersedShape& shape, const mjData& data) const {
   const WaterDescription& w = waters_[water];
   const double *p = data.geom_xpos + 3 * shape.geom, *R = data.geom_xmat + 9 * shape.geom;
   double centre[3], half[3];
@@ -55,7 +55,7 @@ bool WaterForces::is_near(size_t water, const WaterShape& shape, const mjData& d
 
 bool WaterForces::begin(mjModel& model, mjData& data, std::span<const HeightChange> ripples) {
   for (size_t water = 0; water < waters_.size(); ++water) {
-    for (const WaterShape& shape : shapes_) {
+    for (const ImmersedShape& shape : shapes_) {
       if (!is_near(water, shape, data)) continue;
       if (model_armature_ == nullptr) carry_nothing(model);
       push(model, data, shape, waters_[water], ripples[water]);
@@ -64,7 +64,7 @@ bool WaterForces::begin(mjModel& model, mjData& data, std::span<const HeightChan
   return model_armature_ != nullptr;
 }
 
-void WaterForces::push(const mjModel& model, mjData& data, const WaterShape& shape,
+void WaterForces::push(const mjModel& model, mjData& data, const ImmersedShape& shape,
                        const WaterDescription& water, const HeightChange& ripples) {
   Wet wet{
       shape, water, data.geom_xpos + 3 * shape.geom, data.geom_xmat + 9 * shape.geom, {}, {}, {},
@@ -97,7 +97,7 @@ void WaterForces::push(const mjModel& model, mjData& data, const WaterShape& sha
 
 // Sums displacement and drag. False: nothing is under water.
 bool WaterForces::sum_elements(const SurfacePatch& surface, Wet* wet) {
-  const WaterShape& shape = wet->shape;
+  const ImmersedShape& shape = wet->shape;
   const WaterDescription& water = wet->water;
   const double *p = wet->p, *R = wet->R, *v = wet->v, *turn = wet->turn;
   const double bottom = water.level - water.depth;
@@ -111,10 +111,11 @@ bool WaterForces::sum_elements(const SurfacePatch& surface, Wet* wet) {
   }
   high = std::sqrt(high);
   const double per_high = 1 / high;
-  constexpr size_t kSide = WaterCluster::kSide;
+  const double axial = shape.is_round ? 0 : 1;  // weight of the flow along z for the drag across
+  constexpr size_t kSide = ElementCluster::kSide;
   double mass[kSide] = {}, entering[kSide] = {}, centre[3][kSide] = {}, force[3][kSide] = {};
   double damping[3][kSide] = {}, torque[3][kSide] = {}, spin[3][kSide] = {};
-  for (const WaterCluster& cluster : shape.clusters) {
+  for (const ElementCluster& cluster : shape.clusters) {
     const double *c = cluster.centre, *h = cluster.half;
     const double lowest = p[2] + R[6] * c[0] + R[7] * c[1] + R[8] * c[2] - std::abs(R[6]) * h[0] -
                           std::abs(R[7]) * h[1] - std::abs(R[8]) * h[2];
@@ -138,10 +139,13 @@ bool WaterForces::sum_elements(const SurfacePatch& surface, Wet* wet) {
           inside * per_high * cluster.volume[n] * (over > 0 ? 1.0 : 0.0) * (over < 1 ? 1.0 : 0.0);
       entering[n] -= crossing * (R[6] * u[0] + R[7] * u[1] + R[8] * u[2]);
       mass[n] += volume;
+      const double across = u[0] * u[0] + u[1] * u[1], along = u[2] * u[2];
+      const double beside = std::sqrt(across + axial * along);
+      const double speed[3] = {beside, beside, std::sqrt(across + along)};
       double c[3], f[3];
       for (int a = 0; a < 3; ++a) {
         centre[a][n] += volume * (e[a] - R[6 + a] * lower);
-        c[a] = k[a] * std::abs(u[a]) * volume;
+        c[a] = k[a] * speed[a] * volume;
         f[a] = -c[a] * u[a];
         force[a][n] += f[a];
         damping[a][n] += c[a];
@@ -171,7 +175,7 @@ bool WaterForces::sum_elements(const SurfacePatch& surface, Wet* wet) {
 // Sums the forces on the collider as a whole, at the middle of its submerged part: buoyancy and
 // waves, viscous drag, and the momentum of the added water as it enters.
 void WaterForces::sum_whole(Wet* wet) {
-  const WaterShape& shape = wet->shape;
+  const ImmersedShape& shape = wet->shape;
   const double part = wet->mass / wet->water.density / shape.volume;
   // Drag of a sphere (Stokes).
   const double viscous = 6 * std::numbers::pi * wet->water.viscosity * shape.radius * part;
@@ -197,7 +201,7 @@ void WaterForces::sum_whole(Wet* wet) {
 // joints is left out. A step's worth of damping comes to it, (M + c dt) a = F - c v, which is
 // drag by the velocity at the step's end and stable however light the body is.
 void WaterForces::carry(const mjModel& m, mjData& d, const Wet& wet) {
-  const WaterShape& shape = wet.shape;
+  const ImmersedShape& shape = wet.shape;
   // Density of the water, spread over the whole shape
   const double density = wet.mass / shape.volume;
   const double mean = (shape.added[0] + shape.added[1] + shape.added[2]) / 3;

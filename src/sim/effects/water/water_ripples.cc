@@ -52,7 +52,7 @@ void WaterRipples::take_over(const WaterRipples& before) {
   shown_ = before.shown_;
 }
 
-void WaterRipples::displace(const WaterShape& shape, const double* p, const double* R,
+void WaterRipples::displace(const ImmersedShape& shape, const double* p, const double* R,
                             double surface) {
   // An element lies spread over a tent that is as wide as itself or as two cells.
   double extent[3];
@@ -62,7 +62,7 @@ void WaterRipples::displace(const WaterShape& shape, const double* p, const doub
   }
   const double wx = std::max(extent[0], 2 * grid_.dx), wy = std::max(extent[1], 2 * grid_.dy);
   const double per_area = 1 / (wx * wy), deepest = water_.level - water_.depth;
-  for (const WaterElement& e : shape.elements) {
+  for (const VolumeElement& e : shape.elements) {
     const double x = p[0] + R[0] * e.p[0] + R[1] * e.p[1] + R[2] * e.p[2] - water_.low_x();
     const double y = p[1] + R[3] * e.p[0] + R[4] * e.p[1] + R[5] * e.p[2] - water_.low_y();
     const double z = p[2] + R[6] * e.p[0] + R[7] * e.p[1] + R[8] * e.p[2];

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "instant/surface_heights.h"
-#include "sim/effects/water/water_shape.h"
+#include "sim/effects/bodies/immersed_shape.h"
 #include "world/effects/water_description.h"
 
 namespace gloam {
@@ -26,7 +26,7 @@ class WaterRipples {
 
   /// Adds the displacement of a body at this tick: call for each, then advance(). `p`, `R` = X_WG,
   /// `surface` = height at rest there, in the world [m].
-  void displace(const WaterShape& shape, const double* p, const double* R, double surface);
+  void displace(const ImmersedShape& shape, const double* p, const double* R, double surface);
   /// To the next tick, `interval` later [s].
   void advance(double interval);
 

@@ -33,8 +33,8 @@ Vec3 Wind::with_mean(Vec3 gust, double height) const {
 
 void give_air(mjOption* option) {
   if (option->density > 0 || option->viscosity > 0) return;
-  option->density = kAirDensity;
-  option->viscosity = kAirViscosity;
+  option->density = kAir.density;
+  option->viscosity = kAir.viscosity;
 }
 
 WindOnBodies::WindOnBodies(const CompiledWorld& world, Rational timestep)

@@ -7,6 +7,7 @@
 
 #include <optional>
 
+#include "sim/effects/bodies/body_drag.h"
 #include "sim/loop/step_schedule.h"
 #include "world/weather/gusts.h"
 #include "world/world.h"
@@ -36,12 +37,14 @@ class Wind {
 // ICAO's standard atmosphere at sea level, rounded.
 inline constexpr double kAirDensity = 1.2;       ///< [kg/m³]
 inline constexpr double kAirViscosity = 1.8e-5;  ///< [Pa s]
+inline constexpr Fluid kAir{kAirDensity, kAirViscosity};
 
-/// Gives a model that has no fluid of its own air to move in.
+/// Gives a model that MuJoCo's own model of a fluid is to act in (has_own_drag), and that has no
+/// fluid, air to move in.
 void give_air(mjOption* option);
 
-/// Blows on bodies, by MuJoCo's own model of a fluid, which knows one wind for all of them: that at
-/// the mean height of the robots' root bodies, weighted by mass; without robots of all that floats.
+/// Blows on bodies: MuJoCo's option has one wind for all of them, that at the mean height of the
+/// robots' root bodies, weighted by mass; without robots of all that floats.
 class WindOnBodies {
  public:
   WindOnBodies(const CompiledWorld& world, Rational timestep);

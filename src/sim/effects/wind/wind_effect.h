@@ -1,6 +1,6 @@
 #pragma once
-// The wind of a World on its bodies: sets MuJoCo's wind for each step and, where it can, takes the
-// place of MuJoCo's own drag, five times as fast.
+// The wind of a World on its bodies: sets MuJoCo's wind for each step, and adds the drag of air to
+// a model that has no fluid of its own. One that has is left to MuJoCo.
 
 #include <optional>
 
@@ -21,9 +21,7 @@ class WindEffect final : public Effect {
   bool acts_on_bodies() const override { return drag_.has_value(); }
   /// A Command that sets the wind takes the weather's place until the next reset.
   void set_options(const EffectContext& at) override;
-  void prepare_step(const EffectContext& at) override;
   void apply_forces(const EffectContext& at) override;
-  void end_step(mjModel& model) override;
 
  private:
   WindEffect(const CompiledWorld& world, Rational timestep) : wind_(world, timestep) {}

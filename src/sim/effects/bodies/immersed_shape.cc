@@ -1,4 +1,4 @@
-#include "sim/effects/water/water_shape.h"
+#include "sim/effects/bodies/immersed_shape.h"
 
 #include <algorithm>
 #include <cmath>
@@ -18,8 +18,7 @@ constexpr int kMostAlong = 100;  // elements along an edge
 struct DragRow {
   double across, along;
 };
-constexpr DragRow kBoxDrag{1.05, 1.05}, kBallDrag{0.47, 0.47}, kCylinderDrag{0.75, 0.85},
-    kCapsuleDrag{0.75, 0.3};
+constexpr DragRow kBallDrag{0.47, 0.47}, kCylinderDrag{0.75, 0.85}, kCapsuleDrag{0.75, 0.3};
 
 /// Interval of a line along z inside the shape.
 struct Inside {
@@ -96,19 +95,20 @@ double exact_volume(const mjModel& m, int geom, double sampled) {
   }
 }
 
-void set_drag(const mjModel& m, int geom, WaterShape* shape) {
+void set_drag(const mjModel& m, int geom, ImmersedShape* shape) {
   const int type = m.geom_type[geom];
   const DragRow row = type == mjGEOM_SPHERE || type == mjGEOM_ELLIPSOID ? kBallDrag
                       : type == mjGEOM_CYLINDER                         ? kCylinderDrag
                       : type == mjGEOM_CAPSULE                          ? kCapsuleDrag
-                                                                        : kBoxDrag;
+                                               : DragRow{kBoxDrag, kBoxDrag};
   shape->drag[0] = shape->drag[1] = row.across;
   shape->drag[2] = row.along;
+  shape->is_round = type == mjGEOM_CYLINDER || type == mjGEOM_CAPSULE;
 }
 
 /// Fills a column of elements from lines through it; `seen`: its fraction of the area along z.
 void add_column(const SolidLines& solid, const double* low, const int* n, int i, int j,
-                WaterShape* shape, double* seen) {
+                ImmersedShape* shape, double* seen) {
   std::vector<double> sums(static_cast<size_t>(4 * n[2]));  // volume and its first moments
   const double dx = shape->cell[0] / kLines, dy = shape->cell[1] / kLines, dz = shape->cell[2];
   for (int line = 0; line < kLines * kLines; ++line) {
@@ -136,9 +136,9 @@ void add_column(const SolidLines& solid, const double* low, const int* n, int i,
 
 /// Added mass and inertia of the ellipsoid of the same second moments: Lamb 1932, "Hydrodynamics",
 /// articles 114 and 115; the integrals by the midpoint rule.
-void set_added_mass(WaterShape* shape) {
+void set_added_mass(ImmersedShape* shape) {
   double middle[3] = {}, square[3] = {};
-  for (const WaterElement& e : shape->elements) {
+  for (const VolumeElement& e : shape->elements) {
     for (int a = 0; a < 3; ++a) {
       middle[a] += e.volume * e.p[a] / shape->volume;
       square[a] += e.volume * e.p[a] * e.p[a] / shape->volume;
@@ -168,7 +168,7 @@ void set_added_mass(WaterShape* shape) {
 
 }  // namespace
 
-std::optional<WaterShape> water_shape(const mjModel& m, int geom, int elements) {
+std::optional<ImmersedShape> immersed_shape(const mjModel& m, int geom, int elements) {
   switch (m.geom_type[geom]) {
     case mjGEOM_BOX:
     case mjGEOM_SPHERE:
@@ -180,7 +180,7 @@ std::optional<WaterShape> water_shape(const mjModel& m, int geom, int elements) 
     default:
       return {};
   }
-  WaterShape shape;
+  ImmersedShape shape;
   shape.geom = geom;
   shape.body = m.geom_bodyid[geom];
   std::copy_n(m.geom_aabb + 6 * geom, 3, shape.centre);
@@ -199,10 +199,10 @@ std::optional<WaterShape> water_shape(const mjModel& m, int geom, int elements) 
   double sampled = 0, seen = 0;
   for (int i = 0; i < n[0]; ++i)
     for (int j = 0; j < n[1]; ++j) add_column(solid, low, n, i, j, &shape, &seen);
-  for (const WaterElement& e : shape.elements) sampled += e.volume;
+  for (const VolumeElement& e : shape.elements) sampled += e.volume;
   if (!(sampled > 0)) return {};
   shape.volume = exact_volume(m, geom, sampled);
-  for (WaterElement& e : shape.elements) e.volume *= shape.volume / sampled;
+  for (VolumeElement& e : shape.elements) e.volume *= shape.volume / sampled;
   shape.radius = std::cbrt(shape.volume * 3 / 4 / kRound);
   // Along x and y as much of the bounding box as along z.
   const double full = seen / (4 * half[0] * half[1]);
@@ -219,13 +219,14 @@ std::optional<WaterShape> water_shape(const mjModel& m, int geom, int elements) 
   return shape;
 }
 
-std::vector<WaterShape> water_shapes(const mjModel& m) {
-  std::vector<WaterShape> shapes;
+std::vector<ImmersedShape> immersed_shapes(const mjModel& m) {
+  std::vector<ImmersedShape> shapes;
   const std::vector<bool> collide = colliders(m);
   for (int geom = 0; geom < m.ngeom; ++geom) {
     const bool moves = m.body_weldid[m.geom_bodyid[geom]] != 0;
     if (!moves || !collide[static_cast<size_t>(geom)]) continue;
-    if (std::optional<WaterShape> shape = water_shape(m, geom)) shapes.push_back(std::move(*shape));
+    if (std::optional<ImmersedShape> shape = immersed_shape(m, geom))
+      shapes.push_back(std::move(*shape));
   }
   return shapes;
 }
