@@ -434,10 +434,7 @@ void Driver::keep_camera() {
     wanted = clients_ > 0 || now - last_client_ < kCameraLinger;
     if (stream_) report_.dropped = stream_->dropped();
     // Pictures that nobody was there to see are not encoded.
-    if (std::exchange(someone_came_, false)) {
-      picture_is_old_ = true;
-      publisher_.repeat();  // a new one may take a while
-    }
+    picture_is_old_ |= std::exchange(someone_came_, false);
   }
   if (!wanted && stream_) close_camera();
   // A failure is in the report, where every client sees it.
