@@ -54,6 +54,18 @@ bool takes_long(const CameraRequest& request) {
   return request.render.tier == "fast" || pixels == 0 || pixels > kSmallWidth * kSmallHeight;
 }
 
+/// A picture soon, before the one that is asked for: a quarter of its width, and path traced, since
+/// the fast tier takes seconds to fill its cache before it shows anything.
+void make_preview(CameraRequest* request) {
+  constexpr int kFraction = 4;
+  const bool is_known = request->width > 0 && request->height > 0;  // else the camera's own
+  request->width = is_known ? std::max(request->width / kFraction, 1) : kSmallWidth;
+  request->height = is_known ? std::max(request->height / kFraction, 1) : kSmallHeight;
+  if (request->render.tier == "fast") request->render.tier = "path";
+  request->render.error.reset();
+  request->render.spp = std::min(request->render.samples(), kPreviewSamples);
+}
+
 /// Pivot of a camera that sees nothing at its centre: the floor, or a step ahead [m].
 double distance_to_floor(const Pose& X_WC) {
   const double fall = -rotate(X_WC.q, {0, 0, -1}).z;
@@ -339,27 +351,6 @@ Status Driver::open_stream(double scale) {
   return {};
 }
 
-/// A picture soon, before the one that is asked for: a quarter of its width, and path traced, since
-/// the fast tier takes seconds to fill its cache before it shows anything.
-void Driver::make_preview(CameraRequest* request) const {
-  constexpr int kFraction = 4;
-  if (request->width > 0 && request->height > 0) {
-    request->width = std::max(request->width / kFraction, 1);
-    request->height = std::max(request->height / kFraction, 1);
-  } else {
-    request->width = kSmallWidth;
-    request->height = kSmallHeight;
-    for (const CameraOptions& camera : simulation_.world().scene().cameras) {
-      if (camera.name != request->camera) continue;
-      request->width = std::max(camera.width / kFraction, 1);
-      request->height = std::max(camera.height / kFraction, 1);
-    }
-  }
-  if (request->render.tier == "fast") request->render.tier = "path";
-  request->render.error.reset();
-  request->render.spp = std::min(request->render.samples(), kPreviewSamples);
-}
-
 bool Driver::is_still() const {
   return simulation_.paused() && !drag_ && Clock::now() - last_moved_ > kSettle;
 }
@@ -434,10 +425,7 @@ void Driver::keep_camera() {
     wanted = clients_ > 0 || now - last_client_ < kCameraLinger;
     if (stream_) report_.dropped = stream_->dropped();
     // Pictures that nobody was there to see are not encoded.
-    if (std::exchange(someone_came_, false)) {
-      picture_is_old_ = true;
-      publisher_.repeat();  // a new one may take a while
-    }
+    picture_is_old_ |= std::exchange(someone_came_, false);
   }
   if (!wanted && stream_) close_camera();
   // A failure is in the report, where every client sees it.

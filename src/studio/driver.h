@@ -91,7 +91,6 @@ class Driver {
   void follow_pictures();
   void refresh_when_due();
   Status open_stream(double scale);
-  void make_preview(CameraRequest* request) const;
   bool reopen(double scale);
   void measure_pictures(uint64_t pictures);
   void adapt_resolution();

@@ -33,15 +33,6 @@ uint64_t Publisher::sequence() const {
   return sequence_;
 }
 
-void Publisher::repeat() {
-  {
-    const std::lock_guard lock(mutex_);
-    if (newest_ == nullptr) return;
-    encoded_ = sequence_ - 1;
-  }
-  wake_.notify_one();
-}
-
 void Publisher::forget() {
   const std::lock_guard lock(mutex_);
   newest_.reset();

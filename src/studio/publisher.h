@@ -31,8 +31,6 @@ class Publisher {
   std::shared_ptr<const CameraFrame> newest() const;
   /// Frames offered so far.
   uint64_t sequence() const;
-  /// Encodes the newest frame again, for who comes now.
-  void repeat();
   /// Drops the newest frame: the camera has changed.
   void forget();
   void stop();

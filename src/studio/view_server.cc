@@ -116,7 +116,9 @@ class ViewServer::Impl : public WebEvents {
   }
 
   void send_picture(const CameraFrame& frame, uint64_t sequence) {
-    if (clients_ == 0) return;
+    // One waits for whoever comes first: the next may take seconds.
+    if (clients_ == 0 && has_picture_) return;
+    has_picture_ = true;
     const auto& cameras = driver_.cameras();
     const auto row = std::find(cameras.begin(), cameras.end(), frame.camera) - cameras.begin();
     auto packet = encode_picture(frame, sequence, static_cast<uint32_t>(row));
@@ -159,6 +161,7 @@ class ViewServer::Impl : public WebEvents {
   std::atomic<int64_t> controller_ = 0;
   std::mutex error_mutex_, stop_mutex_;
   std::string picture_error_;
+  bool has_picture_ = false;  // the publisher's thread only
   Publisher publisher_;
   Driver driver_;
   WebServer web_;
