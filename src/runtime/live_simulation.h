@@ -108,7 +108,8 @@ class LiveSimulation final : public Simulation {
       : seed_(seed), metering_(metering), meters_(seed, required_meters) {}
   void restart_speed_clock();
   void send_latched();
-  Result<std::shared_ptr<const CompiledWorld>> solve_latest(PoseFrame& poses);
+  using Solve = Status (PoseSolver::*)(const Snapshot&, PoseFrame&);
+  Result<std::shared_ptr<const CompiledWorld>> solve_latest(Solve solve, PoseFrame& poses);
 
   const uint64_t seed_;
   const Metering metering_;
