@@ -42,6 +42,9 @@ struct PoseFrame {
     VolumeGrid density, temperature;  ///< null = clear
   };
   std::vector<Field> fields;  ///< (n_world x ngas)
+
+  /// Fraction of its snow that a body has not shed, 0 … 1, (n_world x nbody); empty = all of it.
+  std::vector<float> snow_left;
 };
 
 }  // namespace gloam

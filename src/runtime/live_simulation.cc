@@ -329,20 +329,21 @@ Result<std::vector<LabelRow>> LiveSimulation::labels() {
 }
 
 // Returns the World of the instant.
-Result<std::shared_ptr<const CompiledWorld>> LiveSimulation::solve_latest(PoseFrame& poses) {
+Result<std::shared_ptr<const CompiledWorld>> LiveSimulation::solve_latest(Solve solve,
+                                                                          PoseFrame& poses) {
   const std::lock_guard lock(solver_mutex_);
   const Snapshot latest = simulator_->latest();
   const auto& world = latest.data().world;
   if (solver_ == nullptr || solver_->world() != world) {
     GLOAM_TRY(solver_, PoseSolver::create(world));
   }
-  GLOAM_TRY_STATUS(solver_->solve(latest, poses));
+  GLOAM_TRY_STATUS(((*solver_).*solve)(latest, poses));
   return world;
 }
 
 Result<Pose> LiveSimulation::body_pose(Body body) {
   PoseFrame poses;
-  GLOAM_TRY(const auto world, solve_latest(poses));
+  GLOAM_TRY(const auto world, solve_latest(&PoseSolver::solve_bodies, poses));
   if (body.world != 0 && body.world != world->serial) {
     return Error{ErrorKind::kInput,
                  "the handle of a body is of another World than the one that runs",
@@ -366,7 +367,7 @@ Result<Pose> LiveSimulation::body_pose(Body body) {
 
 Result<PickResult> LiveSimulation::pick(const CameraFrame& frame, double u, double v) {
   PoseFrame poses;
-  GLOAM_TRY(const auto world, solve_latest(poses));
+  GLOAM_TRY(const auto world, solve_latest(&PoseSolver::solve, poses));
   GLOAM_TRY(const auto shared, renderers_.of(world));
   return pick_at(*shared, poses, frame, u, v);
 }

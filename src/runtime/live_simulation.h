@@ -109,7 +109,8 @@ class LiveSimulation final : public Simulation {
   void restart_speed_clock();
   bool repeats_a_reset();
   void send_latched();
-  Result<std::shared_ptr<const CompiledWorld>> solve_latest(PoseFrame& poses);
+  using Solve = Status (PoseSolver::*)(const Snapshot&, PoseFrame&);
+  Result<std::shared_ptr<const CompiledWorld>> solve_latest(Solve solve, PoseFrame& poses);
 
   const uint64_t seed_;
   const Metering metering_;

@@ -214,7 +214,10 @@ Result<RunReport> record_motion(const World& world, const RunRequest& request,
   const Scene& scene = world.compiled()->scene;
   const bool pictures = !request.out.empty() && wants_pictures(scene);
   const LogRequest log_request = log_request_of(scene, request);
-  const bool metered_always = pictures || !log_request.file.empty();
+  bool metered_always = pictures;
+  if (!pictures && !log_request.file.empty()) {
+    GLOAM_TRY(metered_always, logs_pictures(world, log_request));
+  }
   GLOAM_TRY(auto simulation, LiveSimulation::create(
                                  world, request.simulation,
                                  {.metering = metered_always ? Metering::kAlways : Metering::kNever,

@@ -31,7 +31,7 @@ std::vector<std::string> names_of(const TopicTable& table) {
 
 Result<Pose> TopicInstant::X_WB(int body) {
   if (body == 0) return Pose{};
-  if (!has_poses_) GLOAM_TRY_STATUS(solver_.solve(snapshot_, poses_));
+  if (!has_poses_) GLOAM_TRY_STATUS(solver_.solve_bodies(snapshot_, poses_));
   has_poses_ = true;
   const auto id = static_cast<size_t>(body);
   const double *p = poses_.body_p.data() + 3 * id, *R = poses_.body_R.data() + 9 * id;

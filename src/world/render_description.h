@@ -33,6 +33,7 @@ struct InstanceDescription {
   int mesh = -1;    ///< kMesh: index into meshes; kDeformable: index into deformables
   Vec3f size;       ///< analytic shapes [m]; meshes: half extents that scale texture coordinates
   int body = 0;     ///< body it moves with, 0 = world
+  int bone = 0;     ///< body of a skin's first bone, with which the skin sheds its snow
   Affine3f X_BG;    ///< rigid pose of the shape in the body
   int motion = -1;  ///< row of RenderDescription::motions, of X_BG
   int material = 0;

@@ -136,6 +136,25 @@ Walk walk(const std::shared_ptr<CompiledWorld>& world, double duration) {
   return out;
 }
 
+// Snow that lies on the robot is gone within a second of trotting; one that stands keeps it.
+TEST(TrotInSnow, ShedsWhatLiesOnIt) {
+  const auto left_after = [](double speed, double seconds) {
+    auto world = world_with_bed("snow", 6, 7, {.vx = speed});
+    world->scene.weather = WeatherOptions{.snow_cover = 0.08};
+    Trotting rig(world);
+    EXPECT_TRUE(rig.sim->step(std::lround(seconds / 0.002)).ok());
+    const Snapshot now = rig.sim->latest();
+    const auto& left = now.data().effects.snow_left;
+    std::vector<float> out(static_cast<size_t>(world->model->nbody), 1.0f);
+    return left == nullptr ? out : *left;
+  };
+  const std::vector<float> trots = left_after(0.6, 1.6), stands = left_after(0, 1.6);
+  for (size_t body = 1; body < trots.size(); ++body) {
+    EXPECT_LT(trots[body], 0.1f) << "body " << body << ", 1.3 s of trotting";
+    EXPECT_GT(stands[body], 0.9f) << "body " << body << ", which stands";
+  }
+}
+
 void print(const std::string& name, const Walk& w) {
   fmt::print(
       "{:<12} {:>4} {:.3f} m/s, tilt {:4.1f} deg, height {:.3f} to {:.3f} m, {:2} prints, {:.3f} m "

@@ -38,6 +38,7 @@ struct InstanceView {
   bool moving = false;      ///< while the shutter is open: `keys` holds poses that differ
   bool has_moved = false;   ///< X_WG_previous differs from X_WG
   bool color_only = false;  ///< as in InstanceDescription
+  float snow_left = 1;      ///< as in PoseFrame, of its body
   uint32_t material = 0;
   uint32_t mesh = 0;
   int light = -1;   ///< row of lights when it emits and can be sampled

@@ -238,8 +238,10 @@ void RenderScene::update(std::span<const PoseFrame* const> keys, const PoseFrame
   pose_keys_.clear();
   for (size_t i = 0; i < instances_.size(); ++i) {
     InstanceView& out = instances_[i];
-    if (out.shape == ShapeType::kDeformable) continue;
     const InstanceDescription& in = description_.instances[i];
+    const auto body = static_cast<size_t>(out.shape == ShapeType::kDeformable ? in.bone : in.body);
+    out.snow_left = body < open.snow_left.size() ? open.snow_left[body] : 1;
+    if (out.shape == ShapeType::kDeformable) continue;
     out.X_WG = pose_in_world(description_, open, in);
     out.X_WG_previous =
         &open == &previous || in.is_static ? out.X_WG : pose_in_world(description_, previous, in);

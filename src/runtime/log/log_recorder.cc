@@ -34,18 +34,15 @@ std::span<const uint8_t> bytes_of(const std::string& text) {
 }
 
 // Topics of the log: those that are asked for, else the usual ones. Error: there is no such topic.
-Result<std::vector<TopicInfo>> wanted_topics(const TopicTable& table,
-                                             const std::vector<std::string>& patterns) {
-  std::vector<TopicInfo> wanted;
+Result<std::vector<const Topic*>> wanted_topics(const TopicTable& table,
+                                                const std::vector<std::string>& patterns) {
+  std::vector<const Topic*> wanted;
   for (const Topic& topic : table)
-    if (patterns.empty() && topic.info.is_logged && !topic.info.is_input)
-      wanted.push_back(topic.info);
+    if (patterns.empty() && topic.info.is_logged && !topic.info.is_input) wanted.push_back(&topic);
   for (const std::string& pattern : patterns) {
     GLOAM_TRY(const auto found, find_topics(table, pattern));
     for (const Topic* topic : found)
-      if (!topic->info.is_input &&
-          std::ranges::count(wanted, topic->info.name, &TopicInfo::name) == 0)
-        wanted.push_back(topic->info);
+      if (!topic->info.is_input && std::ranges::count(wanted, topic) == 0) wanted.push_back(topic);
   }
   return wanted;
 }
@@ -60,10 +57,18 @@ Status partial(const Status& status) {
 
 }  // namespace
 
+Result<bool> logs_pictures(const World& world, const LogRequest& request) {
+  GLOAM_TRY(const TopicTable table, make_topic_table(world.compiled()));
+  GLOAM_TRY(const auto topics, wanted_topics(table, request.topics));
+  return std::ranges::any_of(topics, [](const Topic* topic) { return !topic->channel.empty(); });
+}
+
 Result<std::unique_ptr<LogRecorder>> LogRecorder::start(LiveSimulation& simulation,
                                                         const LogRequest& request) {
   GLOAM_TRY(const auto table, simulation.topic_table());
-  GLOAM_TRY(const std::vector<TopicInfo> topics, wanted_topics(*table, request.topics));
+  GLOAM_TRY(const auto wanted, wanted_topics(*table, request.topics));
+  std::vector<TopicInfo> topics;
+  for (const Topic* topic : wanted) topics.push_back(topic->info);
   if (request.overwrite) {
     std::error_code code;  // what is in the way is told of by the sink
     std::filesystem::remove(request.file, code);

@@ -13,6 +13,9 @@
 
 namespace gloam {
 
+/// Whether a log has topics that are made of pictures. Error: no such topic.
+Result<bool> logs_pictures(const World& world, const LogRequest& request);
+
 class LogRecorder {
  public:
   /// Before the first step. Errors: the file exists, no such topic, those of the streams.

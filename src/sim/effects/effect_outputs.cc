@@ -15,6 +15,7 @@ void EffectOutputs::clear() {
   for (FieldWindow& medium : media) medium = {};
   for (HeightChange& surface : surfaces) surface = {};
   loads.clear();
+  snow_left.reset();
 }
 
 }  // namespace gloam

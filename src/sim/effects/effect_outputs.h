@@ -1,6 +1,7 @@
 #pragma once
 // Outputs of effects in Snapshots, by kind of output and not by effect.
 
+#include <memory>
 #include <vector>
 
 #include "instant/contact_load.h"
@@ -15,6 +16,7 @@ struct EffectOutputs {
   std::vector<FieldWindow> media;      ///< by row of CompiledWorld::gases
   std::vector<HeightChange> surfaces;  ///< by row of world/effects/surface_layout.h
   std::vector<ContactLoad> loads;      ///< loads of the last step
+  std::shared_ptr<const std::vector<float>> snow_left;  ///< as PoseFrame::snow_left; null = all
 
   /// Room for the outputs of a World.
   void fit(const CompiledWorld& world);

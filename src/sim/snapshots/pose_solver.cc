@@ -62,7 +62,7 @@ Status PoseSolver::follow_live_fields(const std::shared_ptr<const LiveFields>& l
                           scratch_.get());
 }
 
-Status PoseSolver::solve(const Snapshot& snapshot, PoseFrame& frame) {
+Status PoseSolver::solve_bodies(const Snapshot& snapshot, PoseFrame& frame) {
   const SnapshotData& in = snapshot.data();
   GLOAM_CHECK(in.world == world_, "a Snapshot of another World");
   GLOAM_TRY_STATUS(follow_live_fields(in.live));
@@ -74,17 +74,31 @@ Status PoseSolver::solve(const Snapshot& snapshot, PoseFrame& frame) {
     mj_kinematics(model, data);
     mj_comPos(model, data);
     mj_camlight(model, data);
-    if (model->nflex > 0) mj_flex(model, data);
-    if (layout_.has_tendons) mj_tendon(model, data);
   }));
   frame.n_world = 1;
   frame.run = in.run;
   frame.step = in.step;
   frame.time = in.time;
+  frame.vertices.clear();
   fill_poses(frame);
+  return {};
+}
+
+Status PoseSolver::solve(const Snapshot& snapshot, PoseFrame& frame) {
+  GLOAM_TRY_STATUS(solve_bodies(snapshot, frame));
+  const SnapshotData& in = snapshot.data();
+  const mjModel* model = &this->model();
+  mjData* data = data_.get();
+  GLOAM_TRY_STATUS(guarded([&] {
+    if (model->nflex > 0) mj_flex(model, data);
+    if (layout_.has_tendons) mj_tendon(model, data);
+  }));
+  ++meshed_;
   fill_vertices(in.live.get(), frame);
   append_surface_vertices(*world_, in.effects.surfaces, in.time, &heights_, &frame.vertices);
   fill_live(in.live.get(), frame);
+  frame.snow_left.clear();
+  if (in.effects.snow_left != nullptr) frame.snow_left = *in.effects.snow_left;
   frame.fields.resize(in.effects.media.size());
   for (size_t i = 0; i < frame.fields.size(); ++i)
     in.effects.media[i].read(&frame.fields[i].density, &frame.fields[i].temperature);

@@ -15,6 +15,12 @@ class PoseSolver {
 
   /// Fills `frame`; its buffers are used again. The Snapshot is of the same World. Error: MuJoCo's.
   Status solve(const Snapshot& snapshot, PoseFrame& frame);
+  /// Poses of bodies, cameras and lights alone, for whoever draws nothing: the vertices of skins,
+  /// flexes and waters, which cost a hundred times as much, are not made.
+  Status solve_bodies(const Snapshot& snapshot, PoseFrame& frame);
+
+  /// Number of times that vertices were made.
+  int64_t meshed() const { return meshed_; }
 
   const std::shared_ptr<const CompiledWorld>& world() const { return world_; }
   const DeformableLayout& layout() const { return layout_; }
@@ -35,6 +41,7 @@ class PoseSolver {
   std::vector<float> masses_;            // in own_model_; empty = the World's
   std::vector<float> gravity_, active_;  // scratch to read live fields into
   std::vector<float> heights_;           // scratch for surfaces
+  int64_t meshed_ = 0;
 };
 
 }  // namespace gloam

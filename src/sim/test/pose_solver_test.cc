@@ -91,6 +91,26 @@ TEST(PoseSolver, GivesThePosesOfTheSnapshotsOwnInstant) {
   }
 }
 
+TEST(PoseSolver, BodiesAloneAreWhereTheyAreWithTheRestAndNothingIsMeshed) {
+  auto world = world_from_mjcf(kSeen);
+  auto sim = make_simulator(world, lockstep());
+  auto solver = *PoseSolver::create(world);
+  sim->start();
+  ASSERT_TRUE(sim->step(25).ok());
+  PoseFrame all, bodies;
+  ASSERT_TRUE(solver->solve(sim->latest(), all).ok());
+  EXPECT_EQ(solver->meshed(), 1);
+  ASSERT_TRUE(solver->solve_bodies(sim->latest(), bodies).ok());
+  EXPECT_EQ(solver->meshed(), 1);
+  EXPECT_FALSE(all.vertices.empty());
+  EXPECT_TRUE(bodies.vertices.empty());
+  EXPECT_EQ(bodies.body_p, all.body_p);
+  EXPECT_EQ(bodies.body_R, all.body_R);
+  EXPECT_EQ(bodies.camera_p, all.camera_p);
+  EXPECT_EQ(bodies.light_dir, all.light_dir);
+  EXPECT_EQ(bodies.step, all.step);
+}
+
 TEST(PoseSolver, SkinsAndFlexesAreWhereMuJoCoDrawsThem) {
   auto world = world_from_mjcf(kSeen);
   const mjModel& m = *world->model;

@@ -85,6 +85,7 @@ void describe_skin(const mjModel& m, int i, const std::vector<Affine3f>& poses,
   const int material = materials->row(m.skin_matid[i], rgba, ShapeType::kDeformable, has_uv);
   add_instance(out, std::move(rest), m.skin_vertadr[i], material, m.skin_group[i],
                std::move(label));
+  out->instances.back().bone = body;
 }
 
 /// Element of a flex of dimension 3 that each face belongs to, by its sorted vertices.

@@ -52,22 +52,23 @@ GLOAM_HD Field apply_patterns(const SceneView& scene, const MaterialLayers& m, V
   return relief;
 }
 
-/// A material's own wetness, dust and snow at a place, and what has fallen there.
+/// A material's own wetness, dust and snow at a place, and what has fallen there; of the snow what
+/// the moving body has not shed.
 struct Weathered {
   float wetness = 0, porosity = 0, dust = 0, snow = 0;
   float time = 0, impacts = 0;  ///< of drops, as in FallenView
   GLOAM_HD bool any() const { return wetness + dust + snow > 0; }
 };
-GLOAM_HD Weathered weathered_at(const SceneView& scene, const MaterialLayers& m, Vec3f p,
-                                Vec3f n_W) {
-  Weathered out{m.wetness, m.porosity, m.dust, m.snow};
+GLOAM_HD Weathered weathered_at(const SceneView& scene, const MaterialLayers& m, float snow_left,
+                                Vec3f p, Vec3f n_W) {
+  Weathered out{m.wetness, m.porosity, m.dust, m.snow * snow_left};
   if (!scene.has_fallen()) return out;
   const FallenView& fallen = scene.fallen;
   // Walls lie in the cells of what is above them: those next to them tell.
   const float cell = fallen.shelter.per_metre > 0 ? 1 / fallen.shelter.per_metre : 0.1f;
   const float open = fallen.shelter.open_above(p + n_W * (1.5f * cell), cell);
   out.wetness = max(out.wetness, fallen.wetness * open);
-  out.snow = max(out.snow, fallen.snow * open);
+  out.snow = max(out.snow, fallen.snow * open * snow_left);
   out.time = fallen.time;
   out.impacts = fallen.impacts * open;
   return out;
@@ -138,7 +139,7 @@ GLOAM_HD void apply_layers(const SceneView& scene, const RayHit& hit, const Affi
   const Vec3f geometric_W = s->geometric * side;  // outwards
   const Vec3f n_G = to_frame(X_WG, geometric_W);
   apply_layer_textures(scene, instance, hit, p_G, n_G, width, s);
-  const Weathered weather = weathered_at(scene, m, s->p, geometric_W);
+  const Weathered weather = weathered_at(scene, m, instance.snow_left, s->p, geometric_W);
   if (m.pattern >= 0 || m.wear >= 0 || weather.any()) {
     Field relief = apply_patterns(scene, m, p_G, n_G, width, s);
     relief.gradient = transform_vector(X_WG, relief.gradient);
