@@ -15,6 +15,8 @@ struct EffectOutputs {
   std::vector<FieldWindow> media;      ///< by row of CompiledWorld::gases
   std::vector<HeightChange> surfaces;  ///< by row of world/effects/surface_layout.h
   std::vector<ContactLoad> loads;      ///< loads of the last step
+  /// Work that each body has done on soft ground since the beginning [J]; empty = no probe asks.
+  std::vector<double> ground_work;
 
   /// Room for the outputs of a World.
   void fit(const CompiledWorld& world);
