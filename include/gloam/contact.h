@@ -9,6 +9,7 @@ struct ContactLoad {
   double p[3] = {};          ///< middle of the load, world [m]
   double normal[3] = {};     ///< along which the ground presses, world, unit
   double force[3] = {};      ///< on the geom, world [N]
+  double depth = 0;          ///< sinkage of its deepest cell below the undisturbed surface [m]
 };
 
 }  // namespace gloam

@@ -20,6 +20,7 @@
 #include "gloam/scene/material.h"
 #include "gloam/scene/metric.h"
 #include "gloam/scene/object.h"
+#include "gloam/scene/probe.h"
 #include "gloam/scene/robot.h"
 #include "gloam/scene/run.h"
 #include "gloam/scene/sensor.h"
@@ -63,6 +64,7 @@ struct Scene {
   std::vector<StereoOptions> stereo = {};  ///< a compiled Scene has their cameras in `cameras`
   std::vector<RgbdOptions> rgbd = {};      ///< as for `stereo`
   std::vector<SensorOptions> sensors = {};
+  std::vector<ProbeOptions> probes = {};
   std::vector<TemperatureOptions> temperatures = {};
   std::vector<RandomizeOptions> randomize = {};  ///< empty in a compiled Scene
   SimOptions sim = {};

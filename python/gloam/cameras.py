@@ -254,7 +254,7 @@ class Lidar(Source):
 
 
 class Sensor(Source):
-    """A sensor of MuJoCo's model, with the errors that its [[sensor]] in the scene gives it."""
+    """A sensor of MuJoCo's model or a [[probe]] of the scene, with the errors that its [[sensor]] in the scene gives it."""
 
     def _open(self, options: dict[str, Any], callback: Callable[[Any], None] | None) -> Any:
         return _core.open_sensor(self._sim._core, self.name, options.get("required", True), callback)
@@ -265,8 +265,12 @@ class Sensor(Source):
 
     @property
     def values(self) -> Doubles:
-        """The truth of the last step, live, as MuJoCo has it."""
+        """The truth of the last step, live, as MuJoCo has it; of a probe its last sample since it was opened."""
         sim = self._sim
+        if self.name in sim.world.probes:
+            for _ in self._waiting():
+                pass
+            return np.array(self._last.values if self._last is not None else (), dtype=np.float64)
         index = sim._core_world.find_sensor(self.name).id
         memory = sim.memory
         start = int(memory.array("sensor_adr")[index])

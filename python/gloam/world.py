@@ -49,8 +49,12 @@ class World:
 
     @property
     def sensors(self) -> list[str]:
-        """Sensors of MuJoCo's model."""
+        """Sensors of MuJoCo's model, then the scene's probes."""
         return list(self.info["sensors"])
+
+    @property
+    def probes(self) -> list[str]:
+        return list(self.info["probes"])
 
     @property
     def lidars(self) -> list[str]:

@@ -21,6 +21,7 @@ class DeclaredMetric {
 
   const MetricOptions& options() const { return options_; }
   int robot() const { return robot_; }
+  std::span<const QuantityReader> readers() const { return readers_; }
   /// Name before the unit: "ada.clearance".
   const std::string& name() const { return name_; }
   std::string column() const;

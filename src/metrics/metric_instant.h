@@ -9,9 +9,12 @@
 
 #include "base/vec.h"
 #include "gloam/snapshot.h"
+#include "sensors/probe/probe.h"
 #include "sim/snapshots/snapshot.h"
 
 namespace gloam {
+
+class ProbeReadings;
 
 struct MetricInstant {
   const Snapshot* snapshot = nullptr;
@@ -21,6 +24,7 @@ struct MetricInstant {
   double elapsed = 0;                ///< since the sample before [s]; 0 = the first of its episode
   std::span<const double> light;     ///< illuminance over each robot [lx]; empty = not measured
   std::span<const double> row = {};  ///< built-in metrics of this instant, for expressions
+  const ProbeReadings* probes = nullptr;
 
   double time() const { return snapshot->time(); }
 };
@@ -31,7 +35,8 @@ struct MetricProbes {
   std::function<double(const SnapshotData&, Vec3f p_W)> visibility = {};
   /// Illuminance of level surfaces [lx] at places [m]; empty = it is not measured.
   std::function<std::vector<double>(const Snapshot&, const std::vector<Vec3>&)> illuminance = {};
-  int64_t light_every = 1;  ///< samples from one illuminance to the next
+  int64_t light_every = 1;    ///< samples from one illuminance to the next
+  ProbeSources sources = {};  ///< of the [[probe]]s that expressions name
 };
 
 }  // namespace gloam

@@ -40,6 +40,7 @@ Error no_such_robot(const CompiledWorld& world, const std::string& what, const s
 Result<std::unique_ptr<Metrics>> Metrics::make(const CompiledWorld& world, MetricProbes probes) {
   std::unique_ptr<Metrics> metrics(new Metrics);
   metrics->probes_ = std::move(probes);
+  metrics->readings_ = ProbeReadings(metrics->probes_.sources);
   metrics->columns_.emplace_back("time_s");
   for (const GoalOptions& goal : world.scene.goals) {
     if (robots_like(world, goal.robot).empty())
@@ -105,6 +106,8 @@ Status Metrics::add_declared_of(const MetricOptions& options, const CompiledWorl
   columns_.push_back(metric.column());
   infos_.push_back({columns_.back(), options.unit,
                     robot < 0 ? "" : world.robots[static_cast<size_t>(robot)].name, true});
+  for (const QuantityReader& reader : metric.readers())
+    if (reader.probe >= 0) readings_.add(reader.probe);
   declared_.push_back(std::move(metric));
   return {};
 }
@@ -149,13 +152,15 @@ const std::vector<double>& Metrics::sample(const Snapshot& snapshot) {
     }
     instant_.contacts(&contacts_);
     measure_light(snapshot);
+    readings_.follow(snapshot);
     instant = {&snapshot,
                instant_.model(),
                instant_.data(),
                contacts_,
                samples_ > 0 ? snapshot.time() - present_.duration : 0,
                light_,
-               row_};
+               row_,
+               &readings_};
   }
   const std::span<double> row(row_);
   for (Family& family : families_)

@@ -10,6 +10,7 @@
 #include "gloam/stream_info.h"
 #include "metrics/builtin/robot_metric.h"
 #include "metrics/declared_metric.h"
+#include "metrics/probe_readings.h"
 
 namespace gloam {
 
@@ -64,6 +65,7 @@ class Metrics {
   Episode present_episode() const;
 
   MetricProbes probes_;
+  ProbeReadings readings_;
   std::vector<MetricRobot> robots_;
   std::vector<Family> families_;
   std::vector<DeclaredMetric> declared_;

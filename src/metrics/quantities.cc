@@ -6,6 +6,8 @@
 
 #include "base/text.h"
 #include "metrics/element_fields.h"
+#include "metrics/probe_readings.h"
+#include "scene/options/probe_quantities.h"
 #include "world/model_names.h"
 
 namespace gloam {
@@ -126,10 +128,16 @@ Result<QuantitySlot> Quantities::find_element(Steps name, const std::string& pre
   const mjtObj type = is_sensor ? mjOBJ_SENSOR : kind->type;
   const std::string& wanted = first.arguments[0];
   const int id = mj_name2id(&m, type, (prefix + wanted).c_str());
-  if (id < 0)
+  if (id < 0) {
+    std::vector<std::string> known =
+        names_below(m, type, is_sensor ? m.nsensor : m.*kind->count, prefix);
+    for (size_t i = 0; is_sensor && prefix.empty() && i < world_.probes.size(); ++i) {
+      if (world_.probes[i].options.name == wanted) return find_probe(name, static_cast<int>(i));
+      known.push_back(world_.probes[i].options.name);
+    }
     return refuse_name(first, fmt::format("there is no {} '{}'", first.word, prefix + wanted),
-                       wanted,
-                       names_below(m, type, is_sensor ? m.nsensor : m.*kind->count, prefix));
+                       wanted, known);
+  }
   if (is_sensor) return find_sensor(name, id);
   if (name.size() < 2 || first.index >= 0)
     return Error{ErrorKind::kInput, fmt::format("which number of {} '{}'?", first.word, wanted),
@@ -148,20 +156,38 @@ Result<QuantitySlot> Quantities::find_element(Steps name, const std::string& pre
 Result<QuantitySlot> Quantities::find_sensor(Steps name, int id) {
   const NameStep& first = name[0];
   const mjModel& m = *world_.model;
-  const int count = m.sensor_dim[id];
-  if (first.index >= count)
-    return refuse_name(first, fmt::format("sensor '{}' has {} number{}, from [0]",
-                                          first.arguments[0], count, count == 1 ? "" : "s"));
-  if (first.index < 0 && count != 1 && count != 3)
-    return Error{ErrorKind::kInput,
-                 fmt::format("sensor '{}' has {} numbers", first.arguments[0], count), first.loc,
-                 "write [0], [1] … behind it"};
-  const bool whole = first.index < 0;
-  return place({.id = m.sensor_adr[id] + (whole ? 0 : first.index),
-                .width = whole ? count : 1,
+  GLOAM_TRY(const int width, sensor_width(first, m.sensor_dim[id]));
+  return place({.id = m.sensor_adr[id] + std::max(first.index, 0),
+                .width = width,
                 .read = [](const MetricInstant& in, const QuantityReader& r,
                            double* out) { std::copy_n(in.data->sensordata + r.id, r.width, out); }},
                name.subspan(1));
+}
+
+Result<QuantitySlot> Quantities::find_probe(Steps name, int probe) {
+  const NameStep& first = name[0];
+  const ProbeDescription& in = world_.probes[static_cast<size_t>(probe)];
+  GLOAM_TRY(const int width, sensor_width(first, in.quantity->count()));
+  return place({.id = std::max(first.index, 0),
+                .probe = probe,
+                .width = width,
+                .read =
+                    [](const MetricInstant& instant, const QuantityReader& r, double* out) {
+                      std::copy_n(instant.probes->numbers(r.probe).data() + r.id, r.width, out);
+                    }},
+               name.subspan(1));
+}
+
+// Numbers that are read of a sensor with `count` of them.
+Result<int> Quantities::sensor_width(const NameStep& step, int count) const {
+  if (step.index >= count)
+    return refuse_name(step, fmt::format("sensor '{}' has {} number{}, from [0]", step.arguments[0],
+                                         count, count == 1 ? "" : "s"));
+  if (step.index < 0 && count != 1 && count != 3)
+    return Error{ErrorKind::kInput,
+                 fmt::format("sensor '{}' has {} numbers", step.arguments[0], count), step.loc,
+                 "write [0], [1] … behind it"};
+  return step.index < 0 ? count : 1;
 }
 
 Result<std::vector<char>> Quantities::geoms_like(const std::string& pattern,

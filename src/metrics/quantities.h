@@ -15,6 +15,7 @@ namespace gloam {
 /// Data of an instant that quantities read.
 struct QuantityReader {
   int id = 0;              ///< of MuJoCo's element; row of its sensor, column of a built-in metric
+  int probe = -1;          ///< row of CompiledWorld::probes; -1 = it is none
   int width = 1;           ///< 1 or 3
   size_t first = 0;        ///< of its numbers
   std::vector<char> a, b;  ///< of contacts: geoms on both sides, by id
@@ -46,6 +47,8 @@ class Quantities final : public QuantityNames {
   Result<QuantitySlot> find_robot_number(int robot, std::span<const NameStep> rest);
   Result<QuantitySlot> find_element(std::span<const NameStep> name, const std::string& prefix);
   Result<QuantitySlot> find_sensor(std::span<const NameStep> name, int id);
+  Result<QuantitySlot> find_probe(std::span<const NameStep> name, int probe);
+  Result<int> sensor_width(const NameStep& step, int count) const;
   Result<QuantitySlot> find_contacts(std::span<const NameStep> name, const std::string& prefix);
   Result<std::vector<char>> geoms_like(const std::string& pattern, const NameStep& step) const;
   /// Places the reader, and takes one number of it where `.x`, `.y` or `.z` follows.

@@ -33,6 +33,9 @@ nb::dict info_dict(const World& world) {
   add("joints", info.joints);
   add("actuators", info.actuators);
   add("sensors", info.sensors);
+  nb::list probes;
+  for (const ProbeOptions& probe : world.scene().probes) probes.append(probe.name);
+  made["probes"] = probes;
   add("cameras", info.cameras);
   add("geoms", info.geoms);
   add("sites", info.sites);

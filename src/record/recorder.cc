@@ -173,7 +173,7 @@ class FolderRecorder : public Recorder {
     for (size_t k = 0; k < info_.sensors.size(); ++k) {
       const RecordedSensor& sensor = info_.sensors[k];
       std::vector<std::string> columns = {"sample", "step", "time_s", "delivery_s"};
-      for (int i = 0; i < sensor.values; ++i) columns.push_back(fmt::format("value_{}", i));
+      columns.insert(columns.end(), sensor.columns.begin(), sensor.columns.end());
       GLOAM_TRY(std::unique_ptr<ByteSink> sink,
                 options_.store->create(options_.folder / kSensorsName / sensor_file_names_[k]));
       GLOAM_TRY(CsvWriter csv, CsvWriter::start(std::move(sink), columns));

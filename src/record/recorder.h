@@ -72,8 +72,8 @@ struct MetricPlot {
 };
 
 struct RecordedSensor {
-  std::string name;  ///< full name, as in SensorMessage::sensor
-  int values = 1;
+  std::string name;                  ///< full name, as in SensorMessage::sensor
+  std::vector<std::string> columns;  ///< of its values, with their units
 };
 
 /// MuJoCo's ids of what a row of the label table is; -1 = it is no geom, or no body moves it.

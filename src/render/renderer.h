@@ -109,6 +109,10 @@ class Renderer {
                               std::vector<Vec3f>* radiance) = 0;
   /// Illuminance [lx] of a surface at p_W that faces n_W, a unit vector.
   virtual float illuminance(Vec3f p_W, Vec3f n_W) = 0;
+  /// Fractions of light from far away that reach the middle of a view's lens along each direction
+  /// (unit, world), into `passed`: past what its pictures show, and through media.
+  virtual void distant_light(const CameraView& view, std::span<const Vec3f> directions,
+                             std::span<float> passed) = 0;
   /// Sends out the beams of a LiDAR; `returns`: view.optics.most_returns of each, in their order.
   virtual void scan(const LidarView& view, std::span<LidarReturn> returns) = 0;
   /// For RenderSettings::history; of this renderer alone.

@@ -10,6 +10,7 @@
 #include "base/check.h"
 #include "base/log.h"
 #include "render/cpu/cpu_stages.h"
+#include "render/cpu/guide/distant_light.h"
 #include "render/cpu/guide/illuminance.h"
 #include "render/cpu/guide/light_guide.h"
 #include "render/cpu/lidar_scan.h"
@@ -69,6 +70,13 @@ void resize_film(const CameraView& view, const RenderSettings& settings, Film* f
   visit_details([&](auto& plane) { plane.resize(details); }, *film);
 }
 
+PictureClip clip_of(const CameraView& view, const SceneView& scene, const CameraView32& camera) {
+  PictureClip clip{scene, camera, {view.near, view.culls_backs, {}}};
+  if (view.hidden != nullptr)
+    clip.view.hidden = {view.hidden->data(), static_cast<uint32_t>(view.hidden->size())};
+  return clip;
+}
+
 /// Owns its stages, which know a picture's inputs (Job, CudaJob) and nothing of a renderer.
 class StagedRenderer final : public Renderer {
  public:
@@ -102,9 +110,7 @@ class StagedRenderer final : public Renderer {
     // Measurements before the picture, and the fast tier, know no times: they see mean lamps.
     const DeviceSpan<const float> levels = std::exchange(job.scene.light_levels, {});
     job.tracer = traced_.tracer();
-    PictureClip clip{job.scene, job.camera, {view.near, view.culls_backs, {}}};
-    if (view.hidden != nullptr)
-      clip.view.hidden = {view.hidden->data(), static_cast<uint32_t>(view.hidden->size())};
+    const PictureClip clip = clip_of(view, job.scene, job.camera);
     if (!clip.view.is_idle()) job.tracer.clip = &clip;
     if (settings.tier != RenderTier::kDirect) {
       if (!has_guide_) guide_.build(job.scene, traced_.static_tracer(), described_);
@@ -187,6 +193,17 @@ class StagedRenderer final : public Renderer {
     Affine3f X_WC;
     X_WC.p = p_W;
     return measure_illuminance(scene().view_from(X_WC), traced_.tracer(), p_W, n_W, kDepth);
+  }
+
+  void distant_light(const CameraView& view, std::span<const Vec3f> directions,
+                     std::span<float> passed) override {
+    GLOAM_CHECK(updated_, "update must come before distant_light");
+    const CameraView32 camera = make_camera(view, &camera_keys_);
+    const SceneView seen = scene().view_from(view.X_WC_open);
+    const PictureClip clip = clip_of(view, seen, camera);
+    CpuTracer tracer = traced_.tracer();
+    if (!clip.view.is_idle()) tracer.clip = &clip;
+    measure_distant_light(seen, tracer, view.X_WC_open.p, directions, passed);
   }
 
   void scan(const LidarView& view, std::span<LidarReturn> returns) override {

@@ -16,8 +16,8 @@
 #include "runtime/live_simulation.h"
 #include "runtime/run_to_step.h"
 #include "runtime/sensing_quality.h"
-#include "runtime/visibility_probe.h"
 #include "sensors/lidar/lidar_sensor.h"
+#include "sensors/probe/visibility_probe.h"
 
 namespace gloam {
 namespace {

@@ -255,7 +255,24 @@ Result<std::unique_ptr<LiveSensors>> LiveSimulation::open_all_sensors(bool requi
 
 Result<std::unique_ptr<LiveSensors>> LiveSimulation::open_live_sensors(LiveSensorsRequest request,
                                                                        SensorCallback on_message) {
-  return LiveSensors::open(*simulator_, seed_, std::move(request), std::move(on_message));
+  return LiveSensors::open(*simulator_, seed_, probe_sources(), std::move(request),
+                           std::move(on_message));
+}
+
+ProbeSources LiveSimulation::probe_sources() {
+  ProbeSources sources;
+  sources.renderer =
+      [this](const std::shared_ptr<const CompiledWorld>& world) -> Result<ProbeRenderer> {
+    GLOAM_TRY(const std::shared_ptr<SharedRenderer> shared, renderers_.of(world));
+    return ProbeRenderer{shared, &shared->description, shared->renderer.get(), &shared->mutex};
+  };
+  sources.metered_ev100 = [this](const std::string& camera, const Snapshot& now) -> Result<double> {
+    const std::shared_ptr<ExposureMeter> meter = meters_.of(camera, *now.data().world);
+    if (meter != nullptr) return meter->ev100_at(now.step());
+    return Error{ErrorKind::kInput,
+                 fmt::format("camera '{}' has an automatic exposure that nobody meters", camera)};
+  };
+  return sources;
 }
 
 Result<std::unique_ptr<CameraStream>> LiveSimulation::open_camera(const CameraRequest& request,

@@ -27,6 +27,7 @@
 #include "runtime/run_to_step.h"
 #include "runtime/sensing_metrics.h"
 #include "runtime/state_table.h"
+#include "scene/options/probe_quantities.h"
 #include "sim/loop/step_schedule.h"
 #include "world/sensors/camera_rate.h"
 #include "world/version.h"
@@ -134,6 +135,21 @@ Result<std::vector<RecordedLidar>> recorded_lidars(const World& world, Rational 
   return lidars;
 }
 
+// Columns of a sensor's file: numbers of MuJoCo's have no names.
+std::vector<std::string> columns_of(const SensorDescription& sensor, const CompiledWorld& world) {
+  std::vector<std::string> columns;
+  for (int i = 0; i < sensor.count; ++i) {
+    if (sensor.probe < 0) {
+      columns.push_back(fmt::format("value_{}", i));
+      continue;
+    }
+    const ProbeDescription& probe = world.probes[static_cast<size_t>(sensor.probe)];
+    const ProbeNumber& number = probe.quantity->numbers[static_cast<size_t>(i)];
+    columns.push_back(with_unit(std::string(number.name), number.unit));
+  }
+  return columns;
+}
+
 // The log that is asked for, or the scene's.
 LogRequest log_request_of(const Scene& scene, const RunRequest& request) {
   LogRequest log = request.log;
@@ -214,8 +230,11 @@ Result<RunReport> record_motion(const World& world, const RunRequest& request,
   const Scene& scene = world.compiled()->scene;
   const bool pictures = !request.out.empty() && wants_pictures(scene);
   const LogRequest log_request = log_request_of(scene, request);
-  bool metered_always = pictures;
-  if (!pictures && !log_request.file.empty()) {
+  const bool reads_exposure = has_probe(*world.compiled(), "exposure") &&
+                              (wants(scene.record.outputs, "sensors") || !scene.metrics.empty() ||
+                               !log_request.file.empty());
+  bool metered_always = pictures || reads_exposure;
+  if (!metered_always && !log_request.file.empty()) {
     GLOAM_TRY(metered_always, logs_pictures(world, log_request));
   }
   GLOAM_TRY(auto simulation, LiveSimulation::create(
@@ -288,7 +307,7 @@ Result<RunReport> record_motion(const World& world, const RunRequest& request,
       info.plots.push_back({plot.title, plot.unit, plot.measured, plot.commanded});
     if (wants(scene.record.outputs, "sensors")) {
       for (const SensorDescription& sensor : describe_sensors(*world.compiled()))
-        info.sensors.push_back({sensor.name, sensor.count});
+        info.sensors.push_back({sensor.name, columns_of(sensor, *world.compiled())});
     }
     RecorderOptions options;
     options.folder = request.out;

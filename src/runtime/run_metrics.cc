@@ -6,7 +6,7 @@
 #include "base/hash.h"
 #include "base/log.h"
 #include "runtime/light_probe.h"
-#include "runtime/visibility_probe.h"
+#include "sensors/probe/visibility_probe.h"
 #include "sim/commands/command_check.h"
 
 namespace gloam {
@@ -39,6 +39,7 @@ Result<std::unique_ptr<Metrics>> make_metrics(const World& world, LiveSimulation
       return probe->visibility(snapshot, p_W);
     };
   }
+  probes.sources = simulation.probe_sources();
   probes.light_every = std::max<int64_t>(1, std::llround(request.rate));  // once a second
   return Metrics::make(compiled, std::move(probes));
 }

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "world/world.h"
+
 namespace gloam {
 
 Result<SensorGroup> SensorGroup::make(const std::vector<SensorDescription>& sensors,
@@ -16,7 +18,7 @@ Result<SensorGroup> SensorGroup::make(const std::vector<SensorDescription>& sens
     const SensorOptions* options = sensor.options;
     const uint64_t seed =
         sensor_seed(simulation_seed, sensor.name) ^ (options != nullptr ? options->seed : 0);
-    const Rational rate = options != nullptr ? options->rate : every_step;
+    const Rational rate = sensor.rate.num > 0 ? sensor.rate : every_step;
     const TimingOptions timing =
         options != nullptr ? options->timing.value_or(TimingOptions{}) : TimingOptions{};
     auto made = SensorTiming::make(rate, timing, timestep, seed);
@@ -24,7 +26,7 @@ Result<SensorGroup> SensorGroup::make(const std::vector<SensorDescription>& sens
       Error error = made.error();
       error.kind = ErrorKind::kInput;
       error.message = "sensor '" + sensor.name + "': " + error.message;
-      if (error.loc.file.empty() && options != nullptr) error.loc = options->loc;
+      if (error.loc.file.empty()) error.loc = sensor.loc;
       return error;
     }
     member.timing = std::move(*made);
@@ -34,6 +36,17 @@ Result<SensorGroup> SensorGroup::make(const std::vector<SensorDescription>& sens
     group.members_.push_back(std::move(member));
   }
   return group;
+}
+
+Status SensorGroup::open_probes(const std::shared_ptr<const CompiledWorld>& world,
+                                const ProbeSources& sources) {
+  for (Member& member : members_) {
+    if (member.description.probe < 0) continue;
+    if (instant_ == nullptr) instant_ = std::make_unique<ProbeInstant>(world);
+    const auto row = static_cast<size_t>(member.description.probe);
+    GLOAM_TRY(member.read, make_probe_reader(world->probes[row], {world, sources}));
+  }
+  return {};
 }
 
 std::function<int64_t(int64_t step)> SensorGroup::due() const {
@@ -52,22 +65,39 @@ bool SensorGroup::same_steps(const SensorGroup& other) const {
                     [](const Member& a, const Member& b) { return a.timing.same_steps(b.timing); });
 }
 
-void SensorGroup::sample(const Snapshot& snapshot, const SensorCallback& deliver) {
+// Fills values and time of the member's message: of the Snapshot's own state, but MuJoCo's sensors
+// of the state before.
+Status SensorGroup::read(const Snapshot& snapshot, Member* member) {
   const SnapshotData& data = snapshot.data();
+  const auto count = static_cast<size_t>(member->description.count);
+  SensorMessage& message = member->message;
+  if (member->read) {
+    message.time = data.time;
+    message.values.resize(count);
+    return member->read(*instant_, message.values);
+  }
+  message.time = data.sensor_stamp;
+  const auto first = data.sensordata.begin() + member->description.first;
+  message.values.assign(first, first + member->description.count);
+  return {};
+}
+
+Status SensorGroup::sample(const Snapshot& snapshot, const SensorCallback& deliver) {
+  const SnapshotData& data = snapshot.data();
+  if (instant_ != nullptr) instant_->follow(snapshot);
   for (Member& member : members_) {
     const int64_t k = member.timing.first_at_or_after(data.step);
     if (member.timing.step_of(k) != data.step || member.timing.dropped(k)) continue;
     SensorMessage& message = member.message;
     message.index = k;
     message.step = data.step;
-    message.time = data.sensor_stamp;
+    GLOAM_TRY_STATUS(read(snapshot, &member));
     // It cannot arrive before the step is done that it comes with.
-    message.delivery = std::max(data.time, member.timing.delivery_of(k, data.sensor_stamp));
-    const auto first = data.sensordata.begin() + member.description.first;
-    message.values.assign(first, first + member.description.count);
+    message.delivery = std::max(data.time, member.timing.delivery_of(k, message.time));
     if (member.model != nullptr) member.model->apply(k, message.values);
     deliver(message);
   }
+  return {};
 }
 
 }  // namespace gloam

@@ -1,11 +1,13 @@
 #pragma once
-// MuJoCo's sensors as messages: which samples a Snapshot holds, and their errors.
+// Sensors of an instant as messages, MuJoCo's and probes: which samples a Snapshot holds, and their
+// errors.
 
 #include <functional>
 #include <memory>
 #include <vector>
 
 #include "gloam/sensor.h"
+#include "sensors/probe/probe.h"
 #include "sensors/signal/signal_model.h"
 #include "sensors/timing.h"
 #include "sim/snapshots/snapshot.h"
@@ -15,10 +17,13 @@ namespace gloam {
 
 class SensorGroup {
  public:
-  /// A sensor without a [[sensor]] has no errors and a sample at every step. Errors: a rate or
-  /// jitter that the timestep does not allow.
+  /// A sensor without a [[sensor]] has no errors and, if it is no probe, a sample at every step.
+  /// Errors: a rate or jitter that the timestep does not allow.
   static Result<SensorGroup> make(const std::vector<SensorDescription>& sensors, Rational timestep,
                                   uint64_t simulation_seed);
+  /// Makes the readers of its probes, before the first sample. Error: one needs what is not there.
+  Status open_probes(const std::shared_ptr<const CompiledWorld>& world,
+                     const ProbeSources& sources);
 
   /// For SubscriptionOptions::due: the steps at which at least one of them has a sample.
   std::function<int64_t(int64_t step)> due() const;
@@ -27,17 +32,21 @@ class SensorGroup {
   bool same_steps(const SensorGroup& other) const;
 
   /// Calls `deliver` with every sample that was taken at the Snapshot's step and is not dropped.
-  /// A Snapshot before the last one begins anew.
-  void sample(const Snapshot& snapshot, const SensorCallback& deliver);
+  /// A Snapshot before the last one begins anew. Error: a probe that cannot be read.
+  Status sample(const Snapshot& snapshot, const SensorCallback& deliver);
 
  private:
   struct Member {
     SensorDescription description;
     SensorTiming timing;
     std::unique_ptr<SignalModel> model;  // null: the truth
+    ProbeReader read;                    // of a probe, else empty
     SensorMessage message;               // its memory is used again
   };
+  Status read(const Snapshot& snapshot, Member* member);
+
   std::vector<Member> members_;
+  std::unique_ptr<ProbeInstant> instant_;  // null: there are no probes
 };
 
 }  // namespace gloam

@@ -37,12 +37,6 @@ InstantEncoder weather(const TopicSource& world) {
   };
 }
 
-bool holds(const GasDescription& gas, const Vec3& p) {
-  const Vec3f size = gas.size();
-  return p.x >= gas.low.x && p.y >= gas.low.y && p.z >= gas.low.z && p.x <= gas.low.x + size.x &&
-         p.y <= gas.low.y + size.y && p.z <= gas.low.z + size.z;
-}
-
 // Heat that a fire has released until `time` [J]: the integral of power_at.
 double heat_until(const GasSourceDescription& fire, double time) {
   const double burning = std::clamp(time, fire.start, fire.stop) - fire.start;
@@ -85,7 +79,7 @@ InstantEncoder gas_numbers(size_t row) {
       if (fire.power <= 0) continue;
       GLOAM_TRY(const Pose X_WB, at.X_WB(fire.body));
       const Vec3f& p = fire.X_BS.p;
-      if (!holds(gas, product(X_WB, {{p.x, p.y, p.z}, {}}).p)) continue;
+      if (!gas.holds(product(X_WB, {{p.x, p.y, p.z}, {}}).p)) continue;
       if (fire.is_on(time)) message.heat_release += double{fire.power_at(time)};
       message.heat_released += heat_until(fire, time);
     }

@@ -1,10 +1,12 @@
-// Topics of MuJoCo's sensors. A gyro and an accelerometer at one site are an IMU, force and torque
-// a wrench; every other sensor has a topic of its own.
+// Topics of sensors. A gyro and an accelerometer at one site are an IMU, force and torque a wrench;
+// every other sensor and each probe has a topic of its own.
 
 #include <cmath>
 #include <map>
 
+#include "ros/messages/gloam_msgs.h"
 #include "ros/messages/sensor_msgs.h"
+#include "scene/options/probe_quantities.h"
 #include "topics/model_frames.h"
 #include "topics/ros_values.h"
 #include "topics/topic_table.h"
@@ -75,10 +77,49 @@ Status encode_numbers(const TopicInfo&, Samples samples, MessageBytes* out) {
   return {};
 }
 
+Status encode_vector(const TopicInfo& topic, Samples samples, MessageBytes* out) {
+  encode(geometry_msgs::Vector3Stamped{ros_header(samples[0].time, topic.frame_id),
+                                       vector_of(samples[0])},
+         out);
+  return {};
+}
+
+Status encode_illuminance(const TopicInfo& topic, Samples samples, MessageBytes* out) {
+  sensor_msgs::Illuminance message;
+  message.header = ros_header(samples[0].time, topic.frame_id);
+  message.illuminance = samples[0].values[0];
+  encode(message, out);
+  return {};
+}
+
+Status encode_temperature(const TopicInfo& topic, Samples samples, MessageBytes* out) {
+  constexpr double kFreezing = 273.15;  // ROS has degrees Celsius [K]
+  sensor_msgs::Temperature message;
+  message.header = ros_header(samples[0].time, topic.frame_id);
+  message.temperature = samples[0].values[0] - kFreezing;
+  encode(message, out);
+  return {};
+}
+
+SampleEncoder probe_numbers(const ProbeQuantity& quantity) {
+  return [&quantity](const TopicInfo& topic, Samples samples, MessageBytes* out) {
+    gloam_msgs::Probe message;
+    message.header = ros_header(samples[0].time, topic.frame_id);
+    message.quantity = quantity.word;
+    for (const ProbeNumber& number : std::span(quantity.numbers).first(samples[0].values.size())) {
+      message.names.emplace_back(number.name);
+      message.units.emplace_back(number.unit);
+    }
+    message.values = samples[0].values;
+    encode(message, out);
+    return Status();
+  };
+}
+
 class SensorTopics {
  public:
   SensorTopics(const TopicSource& world, TopicTable* table)
-      : m_(*world->model), table_(table), sensors_(describe_sensors(*world)) {
+      : world_(*world), m_(*world->model), table_(table), sensors_(describe_sensors(*world)) {
     for (const StreamInfo& stream : list_streams(*world))
       if (stream.kind == StreamKind::kSensor) streams_.push_back(stream);
     taken_.resize(sensors_.size());
@@ -87,7 +128,10 @@ class SensorTopics {
   void add() {
     for (int site = 0; site < static_cast<int>(m_.nsite); ++site) add_groups(site);
     for (size_t i = 0; i < sensors_.size(); ++i)
-      if (!taken_[i]) add_one(static_cast<int>(i));
+      if (sensors_[i].probe >= 0)
+        add_probe(static_cast<int>(i));
+      else if (!taken_[i])
+        add_one(static_cast<int>(i));
   }
 
  private:
@@ -128,6 +172,18 @@ class SensorTopics {
     add_topic({sensor}, "", type_name<std_msgs::Float64MultiArray>(), encode_numbers);
   }
 
+  void add_probe(int row) {
+    const auto probe = static_cast<size_t>(sensors_[static_cast<size_t>(row)].probe);
+    const ProbeQuantity& quantity = *world_.probes[probe].quantity;
+    if (quantity.is_vector())
+      return add_topic({row}, "", type_name<geometry_msgs::Vector3Stamped>(), encode_vector);
+    if (quantity.word == "illuminance")
+      return add_topic({row}, "", type_name<sensor_msgs::Illuminance>(), encode_illuminance);
+    if (quantity.word == "gas_temperature")
+      return add_topic({row}, "", type_name<sensor_msgs::Temperature>(), encode_temperature);
+    add_topic({row}, "", type_name<gloam_msgs::Probe>(), probe_numbers(quantity));
+  }
+
   void add_topic(const std::vector<int>& parts, const char* suffix, std::string type,
                  SampleEncoder encode) {
     const StreamInfo& first = streams_[static_cast<size_t>(parts[0])];
@@ -148,6 +204,7 @@ class SensorTopics {
     table_->push_back(std::move(topic));
   }
 
+  const CompiledWorld& world_;
   const mjModel& m_;
   TopicTable* table_;
   std::vector<SensorDescription> sensors_;

@@ -64,8 +64,8 @@ LatchedEncoder static_frames(const TopicSource& world) {
       const bool is_placed =
           is_camera || stream.kind == StreamKind::kLidar || stream.kind == StreamKind::kSensor;
       const std::string parent = frame(stream.parent.id);
-      if (!is_placed || stream.frame_id == parent || std::ranges::count(known, stream.frame_id) > 0)
-        continue;
+      const bool has_frame = stream.frame_id != parent && stream.frame_id != topic.frame_id;
+      if (!is_placed || !has_frame || std::ranges::count(known, stream.frame_id) > 0) continue;
       known.push_back(stream.frame_id);
       message.transforms.push_back(transform_of(
           time, parent, stream.frame_id, is_camera ? product(stream.X_PS, kOptical) : stream.X_PS));

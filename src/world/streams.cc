@@ -8,6 +8,7 @@
 #include "base/text.h"
 #include "gloam/outputs.h"
 #include "gloam/world.h"
+#include "scene/options/probe_quantities.h"
 #include "world/agents/agent_bodies.h"
 #include "world/compile/level.h"
 #include "world/model_names.h"
@@ -149,6 +150,10 @@ class StreamLister {
     const std::vector<SensorDescription> sensors = describe_sensors(world_);
     for (size_t i = 0; i < sensors.size(); ++i) {
       const int id = static_cast<int>(i);
+      if (sensors[i].probe >= 0) {
+        add_probe(world_.probes[static_cast<size_t>(sensors[i].probe)]);
+        continue;
+      }
       const Seat seat = seat_of(m_, id);
       StreamInfo info{.kind = StreamKind::kSensor, .name = sensors[i].name};
       const bool is_site = m_.sensor_objtype[id] == mjOBJ_SITE;
@@ -156,12 +161,26 @@ class StreamLister {
       info.frame_id = !site.empty() ? site : seat.body == 0 ? kWorldFrame : body_label(seat.body);
       info.parent = handle(seat.body);
       info.X_PS = seat.X_BS;
-      if (const SensorOptions* options = sensors[i].options; options != nullptr)
-        info.rate = options->rate;
+      info.rate = sensors[i].rate;
       info.unit = unit_of(m_, id);
       for (int n = 0; n < sensors[i].count; ++n) info.outputs.push_back(fmt::format("{}", n));
       streams_.push_back(std::move(info));
     }
+  }
+
+  // Numbers of probes have world axes, wherever they are measured.
+  void add_probe(const ProbeDescription& probe) {
+    StreamInfo info{.kind = StreamKind::kSensor, .name = probe.options.name};
+    info.frame_id = kWorldFrame;
+    info.parent = handle(probe.body);
+    info.X_PS = {probe.p_B, {}};
+    info.rate = probe.options.rate;
+    for (const ProbeNumber& number : probe.quantity->numbers) {
+      if (number.name.empty()) continue;
+      info.outputs.emplace_back(number.name);
+      if (info.unit.empty()) info.unit = number.unit;
+    }
+    streams_.push_back(std::move(info));
   }
 
   void add_robot(const RobotInstance& robot) {

@@ -206,6 +206,8 @@ WorldInfo World::info() const {
     const int dim = m->sensor_dim[i];
     return fmt::format("{} number{}", dim, dim == 1 ? "" : "s");
   });
+  for (const ProbeDescription& probe : compiled_->probes)
+    info.sensors.push_back({probe.options.name, "probe of " + probe.options.quantity});
   info.cameras = list(m, mjOBJ_CAMERA, m->ncam, camera_detail);
   for (size_t i = 0; i < info.cameras.size(); ++i)
     info.cameras[i].name = camera_name(*m, static_cast<int>(i));

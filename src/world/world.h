@@ -16,6 +16,7 @@
 #include "world/effects/gas_description.h"
 #include "world/effects/soil_description.h"
 #include "world/effects/water_description.h"
+#include "world/sensors/probe_description.h"
 #include "world/weather/wind_description.h"
 
 namespace gloam {
@@ -88,6 +89,7 @@ struct CompiledWorld {
   std::vector<WaterDescription> waters;
   std::vector<SoilDescription> soils;
   std::vector<AgentDescription> agents;
+  std::vector<ProbeDescription> probes;
   ModelPtr visual_model;  ///< source of visual_only meshes and materials; null when there are none
   std::vector<VisualOnlyGeom> visual_only;
   std::vector<VisualOnlyMesh> visual_meshes;

@@ -135,3 +135,27 @@ def test_a_viewer_does_not_stand_in_the_way(tmp_path: Path) -> None:
         camera.next()
         sim.reset()
         camera.next()
+
+
+def test_probes_are_sensors(tmp_path: Path) -> None:
+    ball_file(tmp_path)
+    scene = gloam.Scene.from_dict({
+        "robot": [{"name": "go", "file": "ball.xml"}],
+        "sky": {"sun_elevation": 40.0},
+        "weather": {"wind": 6.0, "gusts": 0.0, "wind_from": 180.0},
+        "probe": [
+            {"name": "mast", "quantity": "wind", "position": [0.0, 0.0, 10.0], "rate": 50},
+            {"name": "landing", "quantity": "contact_force", "body": "go/ball", "rate": 50},
+        ],
+    }, tmp_path)
+    with gloam.load(scene) as sim:
+        assert sim.world.probes == ["mast", "landing"] and sim.sensors["mast"].name == "mast"
+        landing = sim.sensors["landing"].open()
+        for n in range(3):
+            sample = sim.sensors["mast"].next()
+            assert sample.stamp == pytest.approx(n / 50) and np.allclose(sample.values, (0, 6, 0))
+        assert landing.values.shape == (3,) and np.allclose(landing.values, 0), "it falls"
+        sim.run_until(2.0)
+        assert np.allclose(landing.values, (0, 0, 9.81), atol=0.05), "it lies on the floor"
+        with pytest.raises(KeyError, match="mast"):
+            sim.sensors["masts"]

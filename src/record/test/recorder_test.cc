@@ -363,7 +363,7 @@ TEST_F(RecorderTest, NoTwoThingsWriteOneFile) {
   o.outputs = {"png", "sensors"};
   RunInfo info = run_info();
   info.cameras = {{"a/b", intrinsics()}, {"a_b", intrinsics()}, {"A_B", intrinsics()}};
-  info.sensors = {{"s/1", 1}, {"s_1", 1}, {"S_1", 1}};
+  info.sensors = {{"s/1", {"value_0"}}, {"s_1", {"value_0"}}, {"S_1", {"value_0"}}};
   auto recorder = Recorder::start(o, info);
   ASSERT_TRUE(recorder.ok());
   for (const char* sensor : {"s/1", "s_1", "S_1"}) {

@@ -49,6 +49,16 @@ struct Gas {
                 fuel_rate, heat_released, fuel_burned)
 };
 
+/// Numbers of a probe at an instant, world axes: docs/sensors.md.
+struct Probe {
+  std_msgs::Header header;
+  std::string quantity;            ///< "sun_disc"
+  std::vector<std::string> names;  ///< of each number: "u"
+  std::vector<std::string> units;  ///< of each; "" = none
+  std::vector<double> values;      ///< NaN = there is none there now
+  GLOAM_MESSAGE(Probe, header, quantity, names, units, values)
+};
+
 /// Metrics of a run at an instant: docs/metrics.md.
 struct Metrics {
   std_msgs::Header header;

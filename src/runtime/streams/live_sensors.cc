@@ -41,13 +41,15 @@ std::function<int64_t(int64_t)> both_due(std::function<int64_t(int64_t)> sampled
 }  // namespace
 
 Result<std::unique_ptr<LiveSensors>> LiveSensors::open(Simulator& simulator, uint64_t seed,
+                                                       ProbeSources sources,
                                                        LiveSensorsRequest request,
                                                        SensorCallback on_message) {
   std::unique_ptr<LiveSensors> live(
-      new LiveSensors(seed, std::move(request), std::move(on_message)));
+      new LiveSensors(seed, std::move(sources), std::move(request), std::move(on_message)));
   const LiveSensorsRequest& wanted = live->request_;
   live->world_ = simulator.world();
   GLOAM_TRY(live->group_, live->group_of(wanted.sensors, *live->world_, simulator.timestep()));
+  GLOAM_TRY_STATUS(live->group_.open_probes(live->world_, live->sources_));
   SubscriptionOptions options;
   options.due = both_due(live->group_.due(), wanted.used);
   options.required = wanted.required;
@@ -75,7 +77,7 @@ Result<SensorGroup> LiveSensors::group_of(const std::vector<std::string>& names,
 }
 
 // The sensors of another World that are the same go on.
-Status LiveSensors::follow(const std::shared_ptr<const CompiledWorld>& world, Rational timestep) {
+Status LiveSensors::follow(const WorldPtr& world, Rational timestep) {
   std::vector<std::string> kept;
   Status lost;
   for (const std::string& name : request_.sensors) {
@@ -91,6 +93,7 @@ Status LiveSensors::follow(const std::shared_ptr<const CompiledWorld>& world, Ra
   }
   if (!lost.ok() && (kept.empty() || !request_.on_lost)) return lost;
   GLOAM_TRY(group_, group_of(kept, *world, timestep));
+  GLOAM_TRY_STATUS(group_.open_probes(world, sources_));
   request_.sensors = std::move(kept);
   world_ = world;
   return {};
@@ -98,8 +101,7 @@ Status LiveSensors::follow(const std::shared_ptr<const CompiledWorld>& world, Ra
 
 Status LiveSensors::sample(const Snapshot& snapshot, Rational timestep) {
   if (snapshot.data().world != world_) GLOAM_TRY_STATUS(follow(snapshot.data().world, timestep));
-  group_.sample(snapshot, on_message_);
-  return {};
+  return group_.sample(snapshot, on_message_);
 }
 
 }  // namespace gloam

@@ -1,5 +1,6 @@
 #pragma once
-// MuJoCo's sensors of a running simulation: a thread that turns Snapshots into messages.
+// Sensors of an instant of a running simulation, MuJoCo's and probes: a thread that turns Snapshots
+// into messages.
 
 #include <functional>
 #include <memory>
@@ -28,9 +29,9 @@ struct LiveSensorsRequest {
 
 class LiveSensors final : public SensorStream {
  public:
-  /// Errors: no such sensor, SensorGroup's.
+  /// `sources`: of probes, while it is open. Errors: no such sensor, SensorGroup's.
   static Result<std::unique_ptr<LiveSensors>> open(Simulator& simulator, uint64_t seed,
-                                                   LiveSensorsRequest request,
+                                                   ProbeSources sources, LiveSensorsRequest request,
                                                    SensorCallback on_message);
   int64_t dropped() const override { return thread_.dropped(); }
   int64_t complete_at(int64_t from) const override { return thread_.complete_at(from); }
@@ -40,18 +41,24 @@ class LiveSensors final : public SensorStream {
   void drain() { thread_.drain(); }
 
  private:
-  LiveSensors(uint64_t seed, LiveSensorsRequest request, SensorCallback on_message)
-      : seed_(seed), request_(std::move(request)), on_message_(std::move(on_message)) {}
+  using WorldPtr = std::shared_ptr<const CompiledWorld>;
+  LiveSensors(uint64_t seed, ProbeSources sources, LiveSensorsRequest request,
+              SensorCallback on_message)
+      : seed_(seed),
+        sources_(std::move(sources)),
+        request_(std::move(request)),
+        on_message_(std::move(on_message)) {}
   Result<SensorGroup> group_of(const std::vector<std::string>& names, const CompiledWorld& world,
                                Rational timestep) const;
-  Status follow(const std::shared_ptr<const CompiledWorld>& world, Rational timestep);
+  Status follow(const WorldPtr& world, Rational timestep);
   Status sample(const Snapshot& snapshot, Rational timestep);
 
   const uint64_t seed_;
+  const ProbeSources sources_;
   LiveSensorsRequest request_;
   SensorCallback on_message_;
   // World whose Snapshots come; holds the group's options
-  std::shared_ptr<const CompiledWorld> world_;
+  WorldPtr world_;
   SensorGroup group_;
   StreamThread thread_;  // last: it uses the others
 };

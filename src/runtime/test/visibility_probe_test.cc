@@ -1,5 +1,5 @@
 // Visibility at a point: that which media are written with, and that of smoke that is solved for.
-#include "runtime/visibility_probe.h"
+#include "sensors/probe/visibility_probe.h"
 
 #include <algorithm>
 #include <map>

@@ -21,6 +21,7 @@
 #include "scene/options/material_fields.h"
 #include "scene/options/metric_fields.h"
 #include "scene/options/object_fields.h"
+#include "scene/options/probe_fields.h"
 #include "scene/options/robot_fields.h"
 #include "scene/options/run_fields.h"
 #include "scene/options/weather_fields.h"
@@ -71,6 +72,7 @@ void visit_tables(Visitor& v, SceneHeader& header, Scene& scene) {
   v("stereo", scene.stereo, FieldRule{});
   v("rgbd", scene.rgbd, FieldRule{});
   v("sensor", scene.sensors, FieldRule{});
+  v("probe", scene.probes, FieldRule{});
   v("temperature", scene.temperatures, FieldRule{});
   v("randomize", scene.randomize, FieldRule{});
   v("render", scene.render, FieldRule{});

@@ -18,6 +18,7 @@
 #include "scene/validate/validate_imager.h"
 #include "scene/validate/validate_lidar.h"
 #include "scene/validate/validate_light.h"
+#include "scene/validate/validate_probe.h"
 
 namespace gloam {
 namespace {
@@ -208,6 +209,8 @@ Status validate_scene(const Scene& scene) {
   GLOAM_TRY_STATUS(validate_rigs(scene));
   GLOAM_TRY_STATUS(refuse_duplicates(scene.lidars, "lidar"));
   for (const LidarOptions& lidar : scene.lidars) GLOAM_TRY_STATUS(validate_lidar(lidar));
+  GLOAM_TRY_STATUS(refuse_duplicates(scene.probes, "probe"));
+  for (const ProbeOptions& probe : scene.probes) GLOAM_TRY_STATUS(validate_probe(probe));
   GLOAM_TRY_STATUS(refuse_duplicates(scene.lights, "light"));
   for (const LightOptions& light : scene.lights) GLOAM_TRY_STATUS(validate_light(light));
   if (scene.sky) GLOAM_TRY_STATUS(validate_sky(*scene.sky));

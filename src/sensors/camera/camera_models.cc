@@ -7,14 +7,19 @@
 #include "sensors/timing.h"
 
 namespace gloam {
-namespace {
 
-Exposure own_exposure(const ImagerOptions& imager) {
-  const ExposureOptions& exposure = *imager.exposure;
+Exposure fixed_exposure(const CameraSensing& sensing, double ev100) {
+  if (!sensing.imager || !sensing.imager->exposure)
+    return exposure_at(ev100, ExposureOptions().f_number);
+  const ExposureOptions& exposure = *sensing.imager->exposure;
   return {exposure.f_number, exposure.shutter, exposure.iso};
 }
 
-}  // namespace
+Exposure metered_exposure(const CameraSensing& sensing, double f_number, double ev100) {
+  return sensing.imager && sensing.imager->auto_exposure
+             ? program_exposure(ev100, f_number, *sensing.imager->auto_exposure)
+             : exposure_at(ev100, f_number);
+}
 
 Result<std::unique_ptr<CameraModels>> CameraModels::create(const RenderDescription& description,
                                                            int camera, const Intrinsics& intrinsics,
@@ -40,8 +45,7 @@ Result<std::unique_ptr<CameraModels>> CameraModels::create(const RenderDescripti
                  "rational_polynomial"};
   }
   const bool own = sensing.imager && sensing.imager->exposure;
-  models->exposure_ =
-      own ? own_exposure(*sensing.imager) : exposure_at(ev100, ExposureOptions().f_number);
+  models->exposure_ = fixed_exposure(sensing, ev100);
   models->seed_ = seed;
   models->ev100_ = own ? models->exposure_.ev100() : ev100;
   if (sensing.imager && (channels.has("rgb") || channels.has("raw")))
@@ -64,10 +68,7 @@ Status CameraModels::set_temperatures(const std::vector<TemperatureOptions>& tem
 }
 
 void CameraModels::set_ev100(double ev100) {
-  const double f_number = exposure_.f_number;
-  exposure_ = sensing_.imager && sensing_.imager->auto_exposure
-                  ? program_exposure(ev100, f_number, *sensing_.imager->auto_exposure)
-                  : exposure_at(ev100, f_number);
+  exposure_ = metered_exposure(sensing_, exposure_.f_number, ev100);
   ev100_ = exposure_.ev100();
 }
 

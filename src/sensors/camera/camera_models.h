@@ -20,6 +20,11 @@
 
 namespace gloam {
 
+/// Exposure of a camera without a meter: its imager's, else that of `ev100`.
+Exposure fixed_exposure(const CameraSensing& sensing, double ev100);
+/// Exposure for what a meter says [EV], with the f-number of the fixed one.
+Exposure metered_exposure(const CameraSensing& sensing, double f_number, double ev100);
+
 class CameraModels {
  public:
   /// Makes the models of camera row `camera`; `ev100` where its imager does not say, `seed` of

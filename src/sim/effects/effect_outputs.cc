@@ -8,6 +8,7 @@ namespace gloam {
 void EffectOutputs::fit(const CompiledWorld& world) {
   media.resize(world.gases.gases.size());
   surfaces.resize(surface_count(world));
+  if (has_probe(world, "soil_work")) ground_work.assign(static_cast<size_t>(world.model->nbody), 0);
   loads.reserve(world.soils.size() * static_cast<size_t>(world.model->ngeom));
 }
 

@@ -17,6 +17,8 @@ struct EffectOutputs {
   std::vector<HeightChange> surfaces;  ///< by row of world/effects/surface_layout.h
   std::vector<ContactLoad> loads;      ///< loads of the last step
   std::shared_ptr<const std::vector<float>> snow_left;  ///< as PoseFrame::snow_left; null = all
+  /// Work that each body has done on soft ground since the beginning [J]; empty = no probe asks.
+  std::vector<double> ground_work;
 
   /// Room for the outputs of a World.
   void fit(const CompiledWorld& world);

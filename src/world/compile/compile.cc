@@ -120,6 +120,7 @@ Status describe_rest(CompiledWorld* world) {
   GLOAM_TRY(world->waters, describe_waters(world->scene));
   GLOAM_TRY(world->soils, describe_soils(world->scene, *world->model));
   GLOAM_TRY(world->agents, describe_agents(*world));
+  GLOAM_TRY(world->probes, describe_probes(*world));
   world->render_origin = choose_render_origin(*world, &world->place_notes);
   return {};
 }

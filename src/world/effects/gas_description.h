@@ -85,6 +85,11 @@ struct GasDescription {
     return {voxel * static_cast<float>(nx), voxel * static_cast<float>(ny),
             voxel * static_cast<float>(nz)};
   }
+  bool holds(const Vec3& p) const {
+    const Vec3f edges = size();
+    return p.x >= low.x && p.y >= low.y && p.z >= low.z && p.x <= low.x + edges.x &&
+           p.y <= low.y + edges.y && p.z <= low.z + edges.z;
+  }
 };
 
 struct GasesDescription {

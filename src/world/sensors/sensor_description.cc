@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "base/text.h"
+#include "scene/options/probe_quantities.h"
 #include "world/world.h"
 
 namespace gloam {
@@ -32,6 +33,13 @@ SensorKind kind_of(int type) {
   }
 }
 
+const SensorOptions* options_of(const Scene& scene, const std::string& sensor) {
+  const SensorOptions* found = nullptr;
+  for (const SensorOptions& options : scene.sensors)
+    if (fits_pattern(options.match, sensor)) found = &options;
+  return found;
+}
+
 }  // namespace
 
 std::vector<SensorDescription> describe_sensors(const CompiledWorld& world) {
@@ -40,10 +48,21 @@ std::vector<SensorDescription> describe_sensors(const CompiledWorld& world) {
   for (int i = 0; i < static_cast<int>(m.nsensor); ++i) {
     SensorDescription sensor{sensor_name(m, i), m.sensor_adr[i], m.sensor_dim[i],
                              kind_of(m.sensor_type[i])};
-    for (const SensorOptions& options : world.scene.sensors) {
-      if (fits_pattern(options.match, sensor.name)) sensor.options = &options;
+    sensor.options = options_of(world.scene, sensor.name);
+    if (sensor.options != nullptr) {
+      sensor.rate = sensor.options->rate;
+      sensor.loc = sensor.options->loc;
     }
     sensors.push_back(std::move(sensor));
+  }
+  for (size_t i = 0; i < world.probes.size(); ++i) {
+    const ProbeDescription& probe = world.probes[i];
+    sensors.push_back({.name = probe.options.name,
+                       .count = probe.quantity->count(),
+                       .options = options_of(world.scene, probe.options.name),
+                       .probe = static_cast<int>(i),
+                       .rate = probe.options.rate,
+                       .loc = probe.options.loc});
   }
   return sensors;
 }
@@ -52,13 +71,14 @@ Status check_sensors(const CompiledWorld& world) {
   std::vector<std::string> names;
   for (int i = 0; i < static_cast<int>(world.model->nsensor); ++i)
     names.push_back(sensor_name(*world.model, i));
+  for (const ProbeOptions& probe : world.scene.probes) names.push_back(probe.name);
   for (const SensorOptions& options : world.scene.sensors) {
     if (std::any_of(names.begin(), names.end(),
                     [&](const std::string& name) { return fits_pattern(options.match, name); }))
       continue;
     return Error{ErrorKind::kInput, fmt::format("there is no sensor '{}'", options.match),
                  options.loc,
-                 names.empty() ? "the model has no sensors" : suggest_name(options.match, names)};
+                 names.empty() ? "the scene has no sensors" : suggest_name(options.match, names)};
   }
   return {};
 }

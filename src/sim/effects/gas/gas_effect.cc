@@ -184,7 +184,7 @@ void GasEffect::read_field(MediumField* to) const {
     return std::make_shared<const std::vector<float>>(std::move(values));
   };
   VolumeGrid moves;
-  if (world_->model->nv > 0) {
+  if (world_->model->nv > 0 || has_probe(*world_, "gas_velocity")) {
     solver_->read_velocity(&velocity);
     moves = shared(std::move(velocity));
   }

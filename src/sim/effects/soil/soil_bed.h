@@ -29,8 +29,10 @@ class SoilBed {
   /// does to the ground; their poses are set. The hash goes in and comes out with it.
   uint64_t press(uint32_t step, const mjModel& model, const mjData& data,
                  std::span<const ColliderBottom* const> colliders, uint64_t hash);
-  /// Adds the forces of the coming step to data.qfrc_applied. data.qLD is of the present.
-  void push(uint32_t step, const mjModel& model, mjData& data, ResponseSolver* solver);
+  /// Adds the forces of the coming step to data.qfrc_applied. data.qLD is of the present. `work`:
+  /// work of each body on the ground [J], to which that of the step is added; empty = nobody asks.
+  void push(uint32_t step, const mjModel& model, mjData& data, ResponseSolver* solver,
+            std::span<double> work = {});
 
   /// Loads of the last push(), by geoms.
   std::span<const ContactLoad> loads() const { return loads_; }
@@ -65,8 +67,8 @@ class SoilBed {
   float lower_track(const SoilTouch& touch);
   void push_aside(const SoilTouch& touch, const double* velocity, double volume);
   void slide(int cell);
-  void push_body(const mjModel& model, mjData& data, const Body& body, uint32_t step,
-                 ResponseSolver* solver);
+  double push_body(const mjModel& model, mjData& data, const Body& body, uint32_t step,
+                   ResponseSolver* solver);
   double limit_work(const Body& body, const double* free, const double* change, double dt,
                     const double* wrench);
   void react(const Body& body, const double* motion, double share);

@@ -27,6 +27,7 @@ SoilEffect::SoilEffect(std::shared_ptr<const CompiledWorld> world, const mjModel
       touch_sensors_.push_back(sensor);
   }
   near_.reserve(colliders_.size());
+  if (has_probe(*world_, "soil_work")) work_.resize(static_cast<size_t>(m.nbody));
   for (const SoilDescription& soil : world_->soils)
     beds_.push_back(std::make_unique<SoilBed>(soil, m, geoms));
 }
@@ -34,6 +35,7 @@ SoilEffect::SoilEffect(std::shared_ptr<const CompiledWorld> world, const mjModel
 void SoilEffect::reset(const EffectContext& at) {
   at.events.loads.reserve(colliders_.size() * beds_.size());
   for (const auto& bed : beds_) bed->reset();
+  std::ranges::fill(work_, 0.0);
 }
 
 void SoilEffect::take_over(const EffectContext& at, Effect* before) {
@@ -42,6 +44,18 @@ void SoilEffect::take_over(const EffectContext& at, Effect* before) {
   for (size_t i = 0; other != nullptr && i < beds_.size(); ++i) {
     for (const auto& bed : other->beds_)
       if (beds_[i]->take_over(*bed)) break;
+  }
+  if (other != nullptr && !work_.empty() && !other->work_.empty()) take_over_work(*other);
+}
+
+// Work of bodies of the same names.
+void SoilEffect::take_over_work(const SoilEffect& before) {
+  for (size_t body = 1; body < work_.size(); ++body) {
+    const char* name = mj_id2name(world_->model.get(), mjOBJ_BODY, static_cast<int>(body));
+    const int same = name != nullptr && *name != 0
+                         ? mj_name2id(before.world_->model.get(), mjOBJ_BODY, name)
+                         : -1;
+    if (same >= 0) work_[body] = before.work_[static_cast<size_t>(same)];
   }
 }
 
@@ -61,7 +75,7 @@ void SoilEffect::apply_loads(const EffectContext& at) {
   const uint32_t now = static_cast<uint32_t>(at.step) + 1;
   for (const auto& bed : beds_) {
     at.hash = bed->press(now, m, d, near_, at.hash);
-    bed->push(now, m, d, &solver_);
+    bed->push(now, m, d, &solver_, work_);
     at.events.loads.insert(at.events.loads.end(), bed->loads().begin(), bed->loads().end());
   }
 }
@@ -89,6 +103,7 @@ void SoilEffect::update_sensors(const EffectContext& at) {
 void SoilEffect::publish(int64_t, EffectOutputs* out) {
   for (size_t i = 0; i < beds_.size(); ++i)
     out->surfaces[soil_surface(*world_, i)] = {beds_[i]->tracks().field(), 0};
+  std::ranges::copy(work_, out->ground_work.begin());
 }
 
 }  // namespace gloam

@@ -30,6 +30,7 @@ class SoilEffect final : public Effect {
 
  private:
   SoilEffect(std::shared_ptr<const CompiledWorld> world, const mjModel& model);
+  void take_over_work(const SoilEffect& before);
 
   const std::shared_ptr<const CompiledWorld> world_;
   std::vector<ColliderBottom> colliders_;
@@ -37,6 +38,7 @@ class SoilEffect final : public Effect {
   std::vector<std::unique_ptr<SoilBed>> beds_;
   ResponseSolver solver_;
   std::vector<int> touch_sensors_;
+  std::vector<double> work_;  // as EffectOutputs::ground_work
 };
 
 }  // namespace gloam

@@ -99,15 +99,19 @@ struct Sums {
 
 }  // namespace
 
-void SoilBed::push(uint32_t step, const mjModel& m, mjData& d, ResponseSolver* solver) {
+void SoilBed::push(uint32_t step, const mjModel& m, mjData& d, ResponseSolver* solver,
+                   std::span<double> work) {
   loads_.clear();
   for (const Body& body : bodies_) {
-    if (last_dof(m, body.id) >= 0) push_body(m, d, body, step, solver);
+    if (last_dof(m, body.id) < 0) continue;
+    const double done = push_body(m, d, body, step, solver);
+    if (!work.empty()) work[static_cast<size_t>(body.id)] += done;
   }
 }
 
-void SoilBed::push_body(const mjModel& m, mjData& d, const Body& body, uint32_t step,
-                        ResponseSolver* solver) {
+// Returns the work that the body does on the ground in the step [J].
+double SoilBed::push_body(const mjModel& m, mjData& d, const Body& body, uint32_t step,
+                          ResponseSolver* solver) {
   const std::span<SoilLanes> lanes = lanes_of(body);
   for (size_t n = 0; n < body.count; ++n) {
     const SoilTouch& touch = contacts_.touches()[body.first + n];
@@ -157,13 +161,20 @@ void SoilBed::push_body(const mjModel& m, mjData& d, const Body& body, uint32_t 
     if (moved < kConverged * size) break;
   }
   for (const double x : wrench)
-    if (!std::isfinite(x)) return;
+    if (!std::isfinite(x)) return 0;
   const double share = limit_work(body, free, change, dt, wrench);
   for (double& x : wrench) x *= share;
   add_wrench(m, d, body.id, wrench, wrench + 3, body.point);
   answer.step = step + 1;
   solver->accelerations(m, d, body.id, wrench, joints);
   react(body, motion, share);
+  // An even force does its work at the mean of the velocities before and after the step.
+  double done = 0;
+  for (int k = 0; k < 6; ++k) {
+    const double after = free[k] + share * (motion[k] - free[k]);
+    done -= dt / 2 * wrench[k] * (now.velocity[k] + after);
+  }
+  return done;
 }
 
 // Splits the wrench among the geoms.
@@ -193,6 +204,7 @@ void SoilBed::react(const Body& body, const double* motion, double share) {
     for (int a = 0; a < 3; ++a) v[a] += motion[a];
     const double along = dot3(d, v), pressing = l.load[i] - l.stiffness[i] * along;
     load += pressing;
+    now->depth = std::max(now->depth, touch.depth);
     for (size_t a = 0; a < 3; ++a) {
       now->p[a] += pressing * touch.p[a];
       now->normal[a] += pressing * d[a];

@@ -1,4 +1,4 @@
-#include "runtime/visibility_probe.h"
+#include "sensors/probe/visibility_probe.h"
 
 #include <algorithm>
 
