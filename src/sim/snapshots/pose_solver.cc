@@ -86,8 +86,10 @@ Status PoseSolver::solve(const Snapshot& snapshot, PoseFrame& frame) {
   append_surface_vertices(*world_, in.effects.surfaces, in.time, &heights_, &frame.vertices);
   fill_live(in.live.get(), frame);
   frame.fields.resize(in.effects.media.size());
-  for (size_t i = 0; i < frame.fields.size(); ++i)
-    in.effects.media[i].read(&frame.fields[i].density, &frame.fields[i].temperature);
+  for (size_t i = 0; i < frame.fields.size(); ++i) {
+    PoseFrame::Field& field = frame.fields[i];
+    in.effects.media[i].read(&field.density, &field.temperature, &field.flame);
+  }
   return {};
 }
 
