@@ -8,6 +8,7 @@ namespace gloam {
 namespace {
 
 VolumeGrid between(const VolumeGrid& before, const VolumeGrid& after, float share) {
+  if (before == nullptr || after == nullptr) return before;
   auto out = std::make_shared<std::vector<float>>(before->size());
   for (size_t i = 0; i < out->size(); ++i) (*out)[i] = lerp((*before)[i], (*after)[i], share);
   return out;
@@ -15,15 +16,17 @@ VolumeGrid between(const VolumeGrid& before, const VolumeGrid& after, float shar
 
 }  // namespace
 
-void FieldWindow::read(VolumeGrid* density, VolumeGrid* temperature) const {
+void FieldWindow::read(VolumeGrid* density, VolumeGrid* temperature, VolumeGrid* flame) const {
   before->wait();
   *density = before->density();
   *temperature = before->temperature();
+  *flame = before->flame();
   if (share == 0) return;
   after->wait();
   if (after->density() == before->density()) return;
   *density = between(before->density(), after->density(), share);
   *temperature = between(before->temperature(), after->temperature(), share);
+  *flame = between(before->flame(), after->flame(), share);
 }
 
 }  // namespace gloam

@@ -14,9 +14,11 @@ namespace gloam {
 class MediumField {
  public:
   /// `digest`: of all that decides what the solver does next.
-  void finish(VolumeGrid density, VolumeGrid temperature, VolumeGrid velocity, uint64_t digest) {
+  void finish(VolumeGrid density, VolumeGrid temperature, VolumeGrid flame, VolumeGrid velocity,
+              uint64_t digest) {
     density_ = std::move(density);
     temperature_ = std::move(temperature);
+    flame_ = std::move(flame);
     velocity_ = std::move(velocity);
     digest_ = digest;
     done_.store(true, std::memory_order_release);
@@ -25,15 +27,20 @@ class MediumField {
   /// To be called before the others, by each thread.
   void wait() const { done_.wait(false, std::memory_order_acquire); }
 
-  const VolumeGrid& density() const { return density_; }          ///< [kg/m³]; null = clear
+  const VolumeGrid& density() const {
+    return density_;
+  }  ///< outside of flames [kg/m³]; null = clear
   const VolumeGrid& temperature() const { return temperature_; }  ///< [K]
+  const VolumeGrid& flame() const {
+    return flame_;
+  }  ///< absorption by flames [1/m]; null = nothing burns
   /// Velocities of cells' centres [m/s], world, (nz, ny, nx, 3); null = no moving thing is
   /// affected.
   const VolumeGrid& velocity() const { return velocity_; }
   uint64_t digest() const { return digest_; }
 
  private:
-  VolumeGrid density_, temperature_, velocity_;
+  VolumeGrid density_, temperature_, flame_, velocity_;
   uint64_t digest_ = 0;
   std::atomic<bool> done_{false};
 };
@@ -44,7 +51,7 @@ struct FieldWindow {
   float share = 0;  ///< weight of `after`, 0 <= … < 1
 
   /// The grids at the instant; waits for what is not yet done.
-  void read(VolumeGrid* density, VolumeGrid* temperature) const;
+  void read(VolumeGrid* density, VolumeGrid* temperature, VolumeGrid* flame) const;
 };
 
 }  // namespace gloam

@@ -40,6 +40,7 @@ struct PoseFrame {
   /// Grids of what is solved for, by VolumeDescription::field.
   struct Field {
     VolumeGrid density, temperature;  ///< null = clear
+    VolumeGrid flame;                 ///< absorption by flames [1/m]; null = nothing burns
   };
   std::vector<Field> fields;  ///< (n_world x ngas)
 

@@ -10,7 +10,6 @@
 #include "base/parallel.h"
 #include "render/scene/black_body_table.h"
 #include "render/scene/span_of.h"
-#include "world/lights/black_body.h"
 
 namespace gloam {
 namespace {
@@ -153,10 +152,6 @@ Result<VolumeStore> VolumeStore::make(const std::vector<MediumDescription>& medi
     std::copy(medium.albedo.begin(), medium.albedo.end(), view.albedo);
     std::copy(medium.g.begin(), medium.g.end(), view.g);
     view.emission = medium.emission;
-    if (medium.hue_temperature > 0) {
-      const Vec3f hue = black_body_luminance(double{medium.hue_temperature});
-      view.hue = hue / luminance(hue);
-    }
     GLOAM_TRY_STATUS(store.replace(i, volumes[i]));
   }
   return store;
@@ -196,11 +191,10 @@ void VolumeStore::follow(const std::vector<VolumeDescription>& volumes, const Po
     const int field = volumes[i].field;
     if (field < 0 || static_cast<size_t>(field) >= frame.fields.size()) continue;
     const PoseFrame::Field& grids = frame.fields[static_cast<size_t>(field)];
-    if (fields_[i].density == grids.density && fields_[i].temperature == grids.temperature)
-      continue;
     VolumeDescription now = volumes[i];
-    now.density = grids.density;
-    now.temperature = grids.temperature;
+    now.density = now.flame ? grids.flame : grids.density;
+    now.temperature = now.flame ? nullptr : grids.temperature;
+    if (fields_[i].density == now.density && fields_[i].temperature == now.temperature) continue;
     GLOAM_CHECK(replace(i, now).ok(), "an effect made a field that cannot be drawn");
   }
 }

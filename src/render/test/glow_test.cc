@@ -45,21 +45,6 @@ Ray view_ray(uint32_t i) {
   return make_ray({-1.5f, -1.8f, 1.2f}, {1.8f * u.x - 0.3f, 1.6f, 1.1f * u.y - 1.0f});
 }
 
-TEST(Glow, AHueChangesNoBrightness) {
-  for (const float hue : {0.0f, 1500.0f}) {
-    MediaBuilder b;
-    const int soot = b.add_medium({1, 1, 1}, {}, {}, 1);
-    b.media.back().hue_temperature = hue;
-    b.add_box({1, 1, 1}, {}, 1, soot).even_temperature = 1100;
-    const VolumeStore store = b.build();
-    const MediaView media = store.view();
-    const Vec3f glow = media::glow_at(media, media.volumes[0], {0.5f, 0.5f, 0.5f}, {});
-    const Vec3f own = black_body_luminance(1100), like = black_body_luminance(hue > 0 ? hue : 1100);
-    EXPECT_NEAR(luminance(glow) / luminance(own), 1, 1e-3) << hue << " K";
-    EXPECT_NEAR(glow.y / glow.x / (like.y / like.x), 1, 1e-3) << hue << " K";
-  }
-}
-
 TEST(Glow, PointsAreDrawnByTheirDensity) {
   SceneBuilder b;
   add_flame(&b, {}, 2);

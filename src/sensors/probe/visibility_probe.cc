@@ -21,7 +21,7 @@ Result<VisibilityProbe> VisibilityProbe::make(const RenderDescription& descripti
   VisibilityProbe probe;
   std::vector<VolumeDescription> volumes = description.volumes;
   for (VolumeDescription& volume : volumes) {
-    probe.fields_.push_back(volume.field);
+    probe.shown_.push_back({volume.field, volume.flame});
     if (volume.field < 0) continue;
     // A grid, for the store to keep its voxels.
     const size_t voxels = size_t(volume.nx) * size_t(volume.ny) * size_t(volume.nz);
@@ -44,16 +44,17 @@ double VisibilityProbe::visibility(const SnapshotData& snapshot, Vec3f p_W) cons
       return media::density_at(volume, p_G);
     };
     float density = 0;
-    if (fields_[i] < 0) {
+    if (const Shown& shown = shown_[i]; shown.field < 0) {
       density = media::density_at(volume, p_G);
-    } else if (const FieldWindow& window = snapshot.effects.media[static_cast<size_t>(fields_[i])];
+    } else if (const FieldWindow& window = snapshot.effects.media[static_cast<size_t>(shown.field)];
                window.before != nullptr) {
-      window.before->wait();
-      density = density_in(window.before->density());
-      if (window.share > 0 && window.after != nullptr) {
-        window.after->wait();
-        density = lerp(density, density_in(window.after->density()), window.share);
-      }
+      const auto density_of = [&](const MediumField& field) {
+        field.wait();
+        return density_in(shown.flame ? field.flame() : field.density());
+      };
+      density = density_of(*window.before);
+      if (window.share > 0 && window.after != nullptr)
+        density = lerp(density, density_of(*window.after), window.share);
     }
     extinction +=
         double(density) * double(volume.mass_extinction[static_cast<int>(MediumBand::kGreen)]);

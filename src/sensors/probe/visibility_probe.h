@@ -26,8 +26,14 @@ class VisibilityProbe {
   double visibility(const SnapshotData& snapshot, Vec3f p_W) const;
 
  private:
+  /// Grid that a volume shows.
+  struct Shown {
+    int field = -1;      ///< row of SnapshotData::effects.media; -1 = it stays
+    bool flame = false;  ///< its flames
+  };
+
   VolumeStore store_;
-  std::vector<int> fields_;  ///< rows of SnapshotData::fields by volume, -1 = it stays
+  std::vector<Shown> shown_;  ///< by volume
 };
 
 }  // namespace gloam

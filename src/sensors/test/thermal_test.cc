@@ -4,6 +4,8 @@
 #include "base/parallel.h"
 #include "sensors/test/statistics.h"
 #include "sensors/thermal/thermal_band.h"
+#include "world/media/authored_volume.h"
+#include "world/media/flame.h"
 
 namespace gloam {
 namespace {
@@ -136,6 +138,35 @@ TEST(Thermal, MediaDimInTheirOwnBandAndGlow) {
   const double before = std::exp(-2 * 0.8 * 0.25);  // a thing inside, half way
   EXPECT_NEAR(camera.see(film_of(1, 1), view(), 0, air.view())[5],
               apparent_temperature(before * planck(350) + (1 - before) * planck(280)), 0.02);
+}
+
+// A slab full of flame: what it radiates of its heat, thick enough a black body.
+TEST(Thermal, FlamesReadTheirBrightnessTemperature) {
+  for (const float thick : {0.3f, 1.0f, 8.0f}) {
+    GasDescription gas;
+    gas.nx = gas.ny = gas.nz = 4;
+    gas.voxel = thick / 4;
+    gas.low = {-0.5f * thick, -0.5f * thick, -1 - thick};
+    gas.temperature = 300;
+    gas.flame_absorption = flame_absorption_per_heat(0.3f);
+    RenderDescription description = two_things();
+    author_gases({gas}, &description);
+    PoseFrame frame;
+    const float absorption = gas.flame_absorption * kFlameHeatRelease;  // [1/m]
+    frame.fields.push_back({std::make_shared<const std::vector<float>>(64, 0.0f),
+                            std::make_shared<const std::vector<float>>(64, 700.0f),
+                            std::make_shared<const std::vector<float>>(64, absorption)});
+    SensorAir air = std::move(SensorAir::make(description)).value();
+    air.follow(description, frame);
+    const ThermalCamera camera = make({}, description, {{.temperature = 300, .emissivity = 1}});
+    const double seen = camera.see(film_of(1, 20), view(), 0, air.view())[5];
+    const double kept = std::exp(-0.3 * 1.2e6 / (4 * 5.670374e-8 * std::pow(1500, 4)) * thick);
+    EXPECT_NEAR(seen, apparent_temperature(kept * planck(300) + (1 - kept) * planck(1500)), 0.05);
+    printf("%.1f m of flame: %.0f K\n", thick, seen);
+    if (thick > 5) {
+      EXPECT_GT(seen, 1300);
+    }
+  }
 }
 
 // 60 degrees off the axis of a fisheye the way through a slab is twice as long.

@@ -100,8 +100,10 @@ Status PoseSolver::solve(const Snapshot& snapshot, PoseFrame& frame) {
   frame.snow_left.clear();
   if (in.effects.snow_left != nullptr) frame.snow_left = *in.effects.snow_left;
   frame.fields.resize(in.effects.media.size());
-  for (size_t i = 0; i < frame.fields.size(); ++i)
-    in.effects.media[i].read(&frame.fields[i].density, &frame.fields[i].temperature);
+  for (size_t i = 0; i < frame.fields.size(); ++i) {
+    PoseFrame::Field& field = frame.fields[i];
+    in.effects.media[i].read(&field.density, &field.temperature, &field.flame);
+  }
   return {};
 }
 

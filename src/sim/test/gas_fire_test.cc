@@ -5,8 +5,10 @@
 namespace gloam {
 namespace {
 
-/// Mean height of flames above a burner [m]: up to where some voxel shines a quarter as bright as
-/// luminous flame of 1500 K: there it is flame a quarter of the time.
+/// Heat release of turbulent diffusion flames per volume [W/m³] (Orloff and de Ris 1982).
+constexpr float kFullOfFlame = 1.2e6f;
+
+/// Mean height of flames above a burner [m]: up to where some voxel is a quarter full of flame.
 double flame_height(double kilowatts, float diameter, float voxel, float height) {
   const auto cells = [voxel](float size) { return int(std::round(size / voxel)); };
   const float width = std::max(3 * diameter, 2.0f);
@@ -18,17 +20,16 @@ double flame_height(double kilowatts, float diameter, float voxel, float height)
   burner.X_WS.p = {0, 0, 0.5f * voxel};
   burner.half_size = {diameter / 2, diameter / 2, 0.6f * voxel};
   burner.fuel = float(kilowatts * 1e3) / p.heat_of_combustion;
-  constexpr float kQuarter = 1380;  // [K], by Wien's law at 600 nm
-  std::vector<float> soot, kelvin;
+  std::vector<float> power;
   double sum = 0;
   const int settle = 40, steps = 60;
   for (int n = 0; n < settle + steps; ++n) {
     gas->step(0.1f, std::span(&burner, 1), {});
     if (n < settle) continue;
-    gas->read(&soot, &kelvin);
+    gas->read_heat_release(&power);
     size_t top = 0;
-    for (size_t c = 0; c < kelvin.size(); ++c) {
-      if (kelvin[c] > kQuarter) top = c / (size_t(grid.nx) * size_t(grid.ny)) + 1;
+    for (size_t c = 0; c < power.size(); ++c) {
+      if (power[c] > 0.25f * kFullOfFlame) top = c / (size_t(grid.nx) * size_t(grid.ny)) + 1;
     }
     sum += double(top) * double(voxel) / steps;
   }

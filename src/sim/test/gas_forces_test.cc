@@ -48,7 +48,7 @@ struct Stream {
     const auto grid = [](std::vector<float> values) {
       return std::make_shared<const std::vector<float>>(std::move(values));
     };
-    field.finish(grid(std::vector<float>(cells)), grid(std::vector<float>(cells, kelvin)),
+    field.finish(grid(std::vector<float>(cells)), grid(std::vector<float>(cells, kelvin)), {},
                  grid(velocity), 0);
     mj_forward(&model, data.get());
   }

@@ -11,6 +11,7 @@
 #include "scene/options/effect_fields.h"
 #include "world/compile/level.h"
 #include "world/effects/rotor_dust_description.h"
+#include "world/media/flame.h"
 #include "world/media/medium_presets.h"
 #include "world/shapes/extent.h"
 #include "world/shapes/visual_pose.h"
@@ -109,8 +110,6 @@ Result<GasDescription> describe_gas(const GasOptions& options, const Extent& ext
                      suggest_name(options.medium, medium_names()));
   }
   gas.medium = *preset;
-  gas.medium.emission = 1;  // Kirchhoff's law: only what is above 800 K is seen to glow
-  gas.medium.hue_temperature = kFlameTemperature;
   gas.fuel = kFuelTable[row_of(kFuels, options.fuel)];
   gas.temperature = static_cast<float>(options.temperature);
   if (options.wind) gas.wind = to_vec3f(*options.wind);
@@ -223,6 +222,7 @@ Result<GasesDescription> describe_gases(const CompiledWorld& world) {
   GLOAM_TRY_STATUS(check_stirrers(scene, options));
   if (options.empty()) return out;
   const std::vector<Affine3f> X_WB = body_poses_at_qpos0(*world.model);
+  const bool burns = !scene.fires.empty();
   for (const GasOptions& o : options) {
     Extent extent;
     if (o.size) {
@@ -233,6 +233,7 @@ Result<GasesDescription> describe_gases(const CompiledWorld& world) {
       extent = usual_extent(world, out.sources, out.dusts, X_WB);
     }
     GLOAM_TRY(GasDescription gas, describe_gas(o, extent));
+    if (burns) gas.flame_absorption = flame_absorption_per_heat(gas.fuel.radiated);
     for (const GasDescription& other : out.gases) {
       if (overlap(gas, other))
         return gas_error(o, fmt::format("its box overlaps that of gas '{}'", other.name),

@@ -64,9 +64,6 @@ struct DustDescription {
   }
 };
 
-/// Temperature of luminous soot in flames [K]: sooty ones have 1200 to 1700 K.
-inline constexpr float kFlameTemperature = 1500;
-
 struct GasDescription {
   std::string name;
   Vec3f low;                   ///< corner of the box [m], axes along the world's
@@ -75,9 +72,10 @@ struct GasDescription {
   Rational rate;               ///< [Hz]
   MediumDescription medium;
   FuelDescription fuel;
-  float temperature = 0;      ///< temperature of the air around [K]
-  std::optional<Vec3f> wind;  ///< [m/s]; empty = the scene's
-  bool open[6] = {};          ///< sides of the box: -x +x -y +y -z +z
+  float flame_absorption = 0;  ///< flame_absorption_per_heat(); 0 = nothing burns
+  float temperature = 0;       ///< temperature of the air around [K]
+  std::optional<Vec3f> wind;   ///< [m/s]; empty = the scene's
+  bool open[6] = {};           ///< sides of the box: -x +x -y +y -z +z
   float vorticity = 0, cooling = 0, settling = 0;
   SourceLoc loc;
 

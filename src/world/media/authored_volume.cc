@@ -9,6 +9,7 @@
 #include "base/memory.h"
 #include "base/text.h"
 #include "geometry/volume_file.h"
+#include "world/media/flame.h"
 #include "world/media/medium_presets.h"
 #include "world/media/volume_pattern.h"
 #include "world/shapes/visual_pose.h"
@@ -157,6 +158,13 @@ void author_gases(const std::vector<GasDescription>& gases, RenderDescription* o
     volume.even_temperature = gas.temperature;
     volume.field = static_cast<int>(i);
     out->media.push_back(gas.medium);
+    out->volumes.push_back(volume);
+    if (gas.flame_absorption <= 0) continue;
+    volume.name += "/flame";
+    volume.medium = static_cast<int>(out->media.size());
+    volume.even_temperature = kFlameTemperature;
+    volume.flame = true;
+    out->media.push_back(flame_medium());
     out->volumes.push_back(std::move(volume));
   }
 }

@@ -45,11 +45,6 @@ Status check_medium(const MediumDescription& medium) {
     return bad_input(fmt::format("medium '{}' has an emission of {}; it must be 0 or more",
                                  medium.name, medium.emission));
   }
-  if (medium.hue_temperature != 0 &&
-      !(medium.hue_temperature >= 1000 && medium.hue_temperature <= 10000)) {
-    return bad_input(fmt::format("medium '{}' glows as at {} K; it must be 1000 to 10000, or 0",
-                                 medium.name, medium.hue_temperature));
-  }
   return {};
 }
 

@@ -25,9 +25,6 @@ struct MediumDescription {
   /// Emission per metre, relative to a black body of its absorption coefficient and temperature: 1
   /// by Kirchhoff's law, 0 = dark. Red, green and blue alone.
   float emission = 0;
-  /// Temperature of the hue of all emission [K]; 0 = each voxel's own. For voxels whose temperature
-  /// stands for the fraction that is flame: their brightness follows it, their hue must not.
-  float hue_temperature = 0;
 };
 
 /// Values at the centres of voxels, x fastest, (nz x ny x nx). Shared: whoever solves for the field
@@ -56,8 +53,9 @@ struct VolumeDescription {
   VolumeGrid temperature;        ///< [K], >= 0; null = even_temperature everywhere
   float even_density = 0;        ///< [kg/m³]
   float even_temperature = 293;  ///< [K]
-  float fade = 0;  ///< the density falls smoothly to zero over this distance from the walls [m]
-  int field = -1;  ///< row of PoseFrame::fields, whose grids it shows instead; -1 = none
+  float fade = 0;      ///< the density falls smoothly to zero over this distance from the walls [m]
+  int field = -1;      ///< row of PoseFrame::fields, whose grids it shows instead; -1 = none
+  bool flame = false;  ///< shows that field's flames
 };
 
 /// Errors: values that are not finite or outside their range.

@@ -94,14 +94,16 @@ GLOAM_HD float place_in(const MarchStep& step, float u) {
 
 namespace media {
 
-/// Edge of the parts [m] that a step is cut into where something glows: light grows so steeply with
-/// temperature that it changes severalfold from voxel to voxel.
+/// Edge of the parts [m] that a step is cut into where something glows: a voxel, and less where
+/// temperatures differ, with which light grows so steeply that it changes severalfold from voxel to
+/// voxel.
 GLOAM_HD float glow_step(const MediumWalk& walk, Bands bands) {
   float step = 1e30f;
   for (int i = 0; i < walk.count(); ++i) {
     const VolumeView& v = walk[i].volume();
-    if (v.temperature.empty() || !glows(v, walk[i].hottest(), bands)) continue;
-    step = min(step, 0.25f * min(v.voxel.x, min(v.voxel.y, v.voxel.z)));
+    if (!(walk[i].high() > 0) || !glows(v, walk[i].hottest(), bands)) continue;
+    const float part = v.temperature.empty() ? 1.0f : 0.25f;
+    step = min(step, part * min(v.voxel.x, min(v.voxel.y, v.voxel.z)));
   }
   return step;
 }

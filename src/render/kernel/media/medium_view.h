@@ -42,7 +42,6 @@ struct VolumeView {
   float albedo[kMediumBands] = {};
   float g[kMediumBands] = {};
   float emission = 0;
-  Vec3f hue;             ///< of all that glows, of luminance 1; 0 = its temperature's
   int glow = -1;         ///< row of MediaView::glows
   bool changes = false;  ///< its grids are others in every picture
 };
@@ -134,8 +133,7 @@ GLOAM_HD bool glows(const VolumeView& v, float hottest, Bands bands) {
 /// Radiance of black bodies at this point, times the medium's emission [cd/m²].
 GLOAM_HD Vec3f glow_at(const MediaView& media, const VolumeView& v, Vec3f p_G, Bands bands) {
   if (!(v.emission > 0) || !bands.is_visible()) return {};
-  const Vec3f light = media.black_body.at(temperature_at(v, p_G)) * v.emission;
-  return v.hue.x > 0 ? v.hue * luminance(light) : light;
+  return media.black_body.at(temperature_at(v, p_G)) * v.emission;
 }
 
 }  // namespace media

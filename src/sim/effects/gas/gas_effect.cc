@@ -5,6 +5,7 @@
 #include "base/check.h"
 #include "base/log.h"
 #include "geometry/mesh/single.h"
+#include "world/media/flame.h"
 
 namespace gloam {
 namespace {
@@ -14,7 +15,6 @@ GasGrid grid_of(const GasDescription& gas) { return {gas.nx, gas.ny, gas.nz, gas
 GasProperties properties_of(const GasDescription& gas) {
   GasProperties properties;
   properties.ambient_temperature = gas.temperature;
-  properties.flame_temperature = kFlameTemperature;
   properties.vorticity = gas.vorticity;
   properties.cooling = gas.cooling;
   properties.dissipation = gas.settling;
@@ -183,13 +183,23 @@ void GasEffect::read_field(MediumField* to) const {
   const auto shared = [](std::vector<float>&& values) {
     return std::make_shared<const std::vector<float>>(std::move(values));
   };
-  VolumeGrid moves;
+  VolumeGrid flame, moves;
+  if (gas().flame_absorption > 0) {
+    std::vector<float> power;
+    solver_->read_heat_release(&power);
+    for (size_t c = 0; c < power.size(); ++c) {
+      // What is radiated of the heat has passed the smoke that flames hold.
+      density[c] *= 1 - min(power[c] * (1 / kFlameHeatRelease), 1.0f);
+      power[c] *= gas().flame_absorption;
+    }
+    flame = shared(std::move(power));
+  }
   if (world_->model->nv > 0 || has_probe(*world_, "gas_velocity")) {
     solver_->read_velocity(&velocity);
     moves = shared(std::move(velocity));
   }
-  to->finish(shared(std::move(density)), shared(std::move(temperature)), std::move(moves),
-             solver_->hash());
+  to->finish(shared(std::move(density)), shared(std::move(temperature)), std::move(flame),
+             std::move(moves), solver_->hash());
 }
 
 void GasEffect::solve(const Snapshot& now, std::span<const DustDeposit> deposits) {

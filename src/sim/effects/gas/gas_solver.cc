@@ -15,9 +15,6 @@ namespace {
 /// Smoke of which 10 km take a tenth of the light: transport leaves traces everywhere, and what is
 /// empty costs renderers nothing [kg/m³].
 constexpr float kUnseen = 1e-9f;
-/// Heat release of turbulent diffusion flames per volume [W/m³] (Orloff and de Ris 1982): a voxel
-/// that makes so much is full of flame.
-constexpr float kFullOfFlame = 1.2e6f;
 constexpr int kLeastCells = 4, kMostCells = gas::kLongestRow;  ///< along an axis
 
 Error bad(std::string message, std::string hint) {
@@ -58,7 +55,6 @@ Status check(const GasProperties& p) {
       {"soot_yield", p.soot_yield, 0, 1},
       {"radiated", p.radiated, 0, 1},
       {"mixing_time", p.mixing_time, 1e-3f, 1e3f},
-      {"flame_temperature", p.flame_temperature, 500, 3000},
   };
   for (const auto& r : ranges) {
     if (!(r.value >= r.low && r.value <= r.high)) {
@@ -74,15 +70,6 @@ uint64_t bytes_of(const GasGrid& g) {
   const uint64_t cells = uint64_t(g.nx + 2) * uint64_t(g.ny + 2) * uint64_t(g.nz + 2);
   return gas::Pressure::bytes(cells) + gas::Momentum::bytes(cells) + gas::Transport::bytes(cells) +
          cells * (9 * 4 + 16 + 7 + 4 + 4 + 12);
-}
-
-/// Apparent temperature of a burning voxel. Its soot glows in sheets of flame much thinner than the
-/// voxel, and in more of them the faster it burns. The result is the temperature [K] at which all
-/// of the voxel's soot would emit as much light as these sheets, by Wien's law at 600 nm. Thermal
-/// cameras see it too hot: in their band a sheet of a tenth emits less.
-float glowing_temperature(float share, float flame) {
-  constexpr float kBand = 600e-9f / 1.4387769e-2f;  // wavelength over hc/k [1/K]
-  return 1.0f / (1.0f / flame - kBand * std::log(min(share, 1.0f)));
 }
 
 }  // namespace
@@ -158,26 +145,30 @@ void GasSolver::set_velocity(int axis, std::span<const float> faces) {
 }
 
 void GasSolver::read(std::vector<float>* density, std::vector<float>* temperature) const {
-  state_->fetch(gas::field_of(gas::kHeat) | gas::field_of(gas::kSmoke) | gas::kBurningField);
+  state_->fetch(gas::field_of(gas::kHeat) | gas::field_of(gas::kSmoke));
   const State& state = *state_;
   const gas::Shape& s = state.shape;
   density->resize(state.grid.cells());
   temperature->resize(state.grid.cells());
   const float ambient = state.properties.ambient_temperature;
-  const float flame = state.properties.flame_temperature;
   gas::for_rows(s, [&](int j, int k) {
     const size_t from = size_t(s.at(0, j, k)), to = state.walls.cell(0, j, k);
     const float* smoke = &state.scalars[gas::kSmoke][from];
     float* shown = density->data() + to;
     for (int i = 0; i < s.nx; ++i) shown[i] = smoke[i] > kUnseen ? smoke[i] : 0.0f;
     const float* heat = &state.scalars[gas::kHeat][from];
-    const float* burning = &state.burning[from];
     float* kelvin = temperature->data() + to;
     for (int i = 0; i < s.nx; ++i) kelvin[i] = ambient / (1.0f - min(heat[i], 0.9f));
-    for (int i = 0; i < s.nx; ++i) {
-      if (burning[i] > 0.0f)
-        kelvin[i] = max(kelvin[i], glowing_temperature(burning[i] * (1.0f / kFullOfFlame), flame));
-    }
+  });
+}
+
+void GasSolver::read_heat_release(std::vector<float>* power) const {
+  state_->fetch(gas::kBurningField);
+  const State& state = *state_;
+  power->resize(state.grid.cells());
+  gas::for_rows(state.shape, [&](int j, int k) {
+    std::copy_n(state.burning.data() + state.shape.at(0, j, k), state.shape.nx,
+                power->data() + state.walls.cell(0, j, k));
   });
 }
 

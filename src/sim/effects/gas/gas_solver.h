@@ -36,8 +36,6 @@ struct GasProperties {
   /// Time in which fuel and air of one voxel mix [s]: "mixed is burnt" (eddy break-up, Magnussen
   /// and Hjertager 1977; of FDS's order at voxels of this size).
   float mixing_time = 0.1f;
-  /// Temperature of the luminous soot inside burning voxels, for rendering [K].
-  float flame_temperature = 1500;
   /// Sides of the box, -x +x -y +y -z +z: open air at rest pressure, or closed.
   bool open[6] = {true, true, true, true, true, true};
 };
@@ -118,9 +116,11 @@ class GasSolver {
   GasStep step(float dt, std::span<const GasSource> sources, Vec3f wind,
                std::span<const GasRotor> rotors = {}, std::span<const GasEmission> emissions = {});
 
-  /// Soot concentration [kg/m³] and temperature [K], (nz, ny, nx). Where it burns, it is that at
-  /// which the soot gives the light of its luminous fraction: flames are thinner than voxels.
+  /// Smoke concentration [kg/m³] and mean temperature [K] of cells, (nz, ny, nx).
   void read(std::vector<float>* density, std::vector<float>* temperature) const;
+
+  /// Heat release in the last substep, with what is radiated of it [W/m³], (nz, ny, nx).
+  void read_heat_release(std::vector<float>* power) const;
 
   /// Velocities of cells' centres [m/s], world, (nz, ny, nx, 3).
   void read_velocity(std::vector<float>* velocity) const;
