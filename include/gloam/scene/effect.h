@@ -28,7 +28,7 @@ struct GasOptions {
   std::optional<Vec3> wind = {};  ///< wind of the air around, which blows in at open sides [m/s];
                                   ///< empty = that of [weather]
   std::vector<std::string> closed = {};  ///< sides nothing passes: -x +x -y +y -z +z
-  double vorticity = 0.4;                ///< confinement of eddies, 0 … 1
+  double vorticity = 0.2;                ///< confinement of eddies, 0 … 1
   double cooling = 0.02;                 ///< fraction of the heat that is lost each second [1/s]
   double settling = 0;                   ///< fraction of the smoke that is lost each second [1/s]
   SourceLoc loc = {};

@@ -144,14 +144,15 @@ TEST(LidarInRain, ParticlesAreAsManyAndAsBrightAsTheirLawSays) {
   LidarOptics optics;
   optics.divergence = {4e-3f, 2e-3f};
   optics.beam_size = {0.01f, 0.01f};
-  const LidarParticle drop{500, 1e-8f};
+  const std::vector<LidarParticle> drops{{500, 1e-8f}};
+  const LidarParticle& drop = drops.front();
   const uint32_t k = 20;  // 10 m
   const Vec2f half = lidar::half_widths(optics, static_cast<float>(k + 1) * lidar::kCell);
   EXPECT_NEAR(half.x, std::hypot(0.005, 0.5 * 4e-3 * 10.5), 1e-6);
   std::vector<LidarCell> cells(k + 1);
   const float volume = kPi * half.x * half.y * sqr(lidar::kRim) * lidar::kCell;
   cells[k].mean = drop.number * volume;
-  const LidarParticles set{{&drop, 1}, {cells.data(), k + 1}, 1};
+  const LidarParticles set{{drops.data(), 1}, {cells.data(), k + 1}, 1};
   optics.particles = {&set, 1};
   double number = 0, square = 0, signal = 0;
   constexpr int n = 20000;

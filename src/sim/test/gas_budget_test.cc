@@ -84,7 +84,7 @@ TEST(GasBudget, AFireInASealedRoomGoesOutForWantOfAir) {
   // 4.1 m³ of air, at 3.04 MJ per kg of it.
   const double most = 4.096 * 1.204 * 3.04e6 / 25e6;
   // Heat that a sealed room can not give off by flowing out thins the air that is left.
-  EXPECT_GT(gas->budget().fuel_burnt, 0.25 * most) << "kg: it should use up much of the air";
+  EXPECT_GT(gas->budget().fuel_burnt, 0.2 * most) << "kg: it should use up much of the air";
   EXPECT_LT(gas->budget().fuel_burnt, most) << "kg: there is no air for more";
   EXPECT_LT(gas->budget().fuel_burnt - half, 0.05 * most) << "kg burnt in the second half";
 }

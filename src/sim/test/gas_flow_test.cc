@@ -92,26 +92,46 @@ struct Plume {
   double rise = 0;   ///< of temperature, where the mean is greatest [K]
 };
 
+/// Height from which plumes of a source of 0.5 m seem to come [m] (Heskestad 1983). Q: [kW].
+double virtual_origin(double q) { return 0.083 * std::pow(q, 0.4) - 1.02 * 0.5; }
+
 /// Heskestad's laws (SFPE Handbook, "Fire plumes"), which are those of Morton, Taylor and Turner
 /// (1956) with measured constants. Q: [kW].
-Plume heskestad(double q, double z) {
+Plume heskestad(double q, double height) {
+  const double z = height - virtual_origin(q);
   // Mass flow 0.071 Q^(1/3) z^(5/3) [kg/s] (Zukoski; far from the source).
   return {0.071 / 1.204 * std::cbrt(q) * std::pow(z, 5.0 / 3.0),
           1.03 * std::cbrt(q) * std::pow(z, -1.0 / 3.0),
           25.0 * std::pow(q, 2.0 / 3.0) * std::pow(z, -5.0 / 3.0)};
 }
 
-/// Within three quarters of the flow and 0.6 of the others: what the grid does not resolve decides.
-void check_plume(float voxel) {
+constexpr double kPlumePower = 20;  ///< [kW]
+
+/// Box with a floor around the foot of a plume, `height` m high.
+GasGrid plume_grid(float voxel, float height) {
   const auto cells = [voxel](float size) { return int(std::round(size / voxel)); };
-  const GasGrid grid{cells(3.2f), cells(3.2f), cells(4.4f), voxel, {-1.6f, -1.6f, 0}};
+  return {cells(3.2f), cells(3.2f), cells(height), voxel, {-1.6f, -1.6f, 0}};
+}
+
+std::unique_ptr<GasSolver> make_plume(const GasGrid& grid) {
   GasProperties p;
   p.open[4] = false;
   p.cooling = 0;
-  auto gas = make_gas(grid, p);
-  const double q = 20;  // [kW]
+  return make_gas(grid, p);
+}
+
+GasSource plume_source() {
   GasSource source = ball({0, 0, 0.2f}, 0.25f);
-  source.heat = float(q) * 1e3f;
+  source.heat = float(kPlumePower) * 1e3f;
+  return source;
+}
+
+/// Within what the grid does not resolve.
+void check_plume(float voxel) {
+  const GasGrid grid = plume_grid(voxel, 4.4f);
+  auto gas = make_plume(grid);
+  const double q = kPlumePower;
+  const GasSource source = plume_source();
   const double heights[] = {2, 2.8, 3.6};
   const size_t plane = size_t(grid.nx) * size_t(grid.ny);
   std::vector<double> speed[3], rise[3];
@@ -146,14 +166,57 @@ void check_plume(float voxel) {
         "voxels of %.2f m, %.1f m up: %.2f m3/s (law %.2f), %.2f m/s (%.2f), %.0f K warmer "
         "(%.0f)\n",
         double(voxel), heights[h], flow, law.flow, fastest, law.speed, warmest, law.rise);
-    EXPECT_NEAR(flow, law.flow, 0.75 * law.flow) << "m3/s at " << heights[h] << " m";
-    EXPECT_NEAR(fastest, law.speed, 0.6 * law.speed) << "m/s at " << heights[h] << " m";
-    EXPECT_NEAR(warmest, law.rise, 0.55 * law.rise) << "K at " << heights[h] << " m";
+    EXPECT_NEAR(flow, law.flow, 0.35 * law.flow) << "m3/s at " << heights[h] << " m";
+    EXPECT_NEAR(fastest, law.speed, 0.2 * law.speed) << "m/s at " << heights[h] << " m";
+    EXPECT_NEAR(warmest, law.rise, 0.45 * law.rise) << "K at " << heights[h] << " m";
   }
+}
+
+/// Height of the front of a plume that starts [m]: up to where some cell is a quarter as much
+/// warmer as on the axis of a steady one.
+double front_of(const GasSolver& gas) {
+  const GasGrid& grid = gas.grid();
+  std::vector<float> soot, kelvin;
+  gas.read(&soot, &kelvin);
+  const size_t plane = size_t(grid.nx) * size_t(grid.ny);
+  for (size_t k = size_t(grid.nz); k-- > 0;) {
+    const auto layer = kelvin.begin() + ptrdiff_t(k * plane);
+    const float warmest = *std::max_element(layer, layer + ptrdiff_t(plane));
+    const double z = (double(k) + 0.5) * double(grid.voxel);
+    if (double(warmest) - 293 > 0.25 * heskestad(kPlumePower, z).rise)
+      return double(k + 1) * double(grid.voxel);
+  }
+  return 0;
+}
+
+/// The cap of a plume that starts rises at 0.61 of the speed on the axis of a steady one (Turner
+/// 1962, "The starting plume in neutral surroundings"; 0.6: Bhamidipati and Woods 2017, "On the
+/// dynamics of starting plumes"), which makes z^(4/3) = 4/3 0.61 w z^(1/3) t above its origin.
+void check_front(float voxel) {
+  auto gas = make_plume(plume_grid(voxel, 8));
+  const GasSource source = plume_source();
+  const double origin = virtual_origin(kPlumePower);
+  const double speed = 0.61 * heskestad(kPlumePower, 1 + origin).speed;
+  const auto law = [=](double t) { return origin + std::pow(4.0 / 3 * speed * t, 0.75); };
+  double first = 0, last = 0;
+  constexpr int kFirst = 35, kLast = 60;  // [0.1 s]
+  for (int n = 1; n <= kLast; ++n) {
+    gas->step(0.1f, std::span(&source, 1), {});
+    if (n != kFirst && n != kLast) continue;
+    last = front_of(*gas);
+    if (n == kFirst) first = last;
+    printf("voxels of %.2f m, %.1f s: front at %.2f m (law %.2f)\n", double(voxel), 0.1 * n, last,
+           law(0.1 * n));
+    EXPECT_NEAR(last, law(0.1 * n), 0.1 * law(0.1 * n)) << "m after " << 0.1 * n << " s";
+  }
+  const double expected = law(0.1 * kLast) - law(0.1 * kFirst);
+  EXPECT_NEAR(last - first, expected, 0.2 * expected) << "m of its way: its speed";
 }
 
 TEST(GasFlow, PlumesObeyTheirLaw) { check_plume(0.16f); }
 TEST(GasPlumes, PlumesObeyTheirLaw) { check_plume(0.1f); }
+TEST(GasFlow, FrontsOfStartingPlumesObeyTheirLaw) { check_front(0.16f); }
+TEST(GasPlumes, FrontsOfStartingPlumesObeyTheirLaw) { check_front(0.1f); }
 
 }  // namespace
 }  // namespace gloam

@@ -16,9 +16,8 @@ namespace {
 // haze: "continental polluted" at 80 % humidity of OPAC 3.1 (Hess, Koepke and Schult 1998): 2.86
 //   m²/g, albedo 0.89 and g 0.70 at 550 nm; other visible and near bands by its Ångström exponent
 //   1.4, far infrared by its insoluble part and what the rest absorbs.
-// dust: Mie theory (Bohren and Huffman 1983) of mineral grains. Refractive index in the visible:
-// mean
-//   of 19 soils of eight regions, n 1.52, k 0.0033, 0.0024, 0.0018, 0.0012, 0.0010, 0.0009, 0.0009
+// dust: Mie theory (Bohren and Huffman 1983) of mineral grains. Refractive index in the
+//   visible: mean of 19 soils of eight regions, n 1.52, k 0.0033, 0.0024, 0.0018, 0.0012, 0.0010, 0.0009, 0.0009
 //   at 370, 470, 520, 590, 660, 880, 950 nm (Di Biagio et al. 2019, table 4), the last of them held
 //   to 1550 nm; from 8 to 14 µm "mineral" of OPAC (after Volz 1973). Sizes: coarse mode over Cape
 //   Verde, log-normal about a radius of 1.90 µm by volume, ln sigma 0.60 (Dubovik et al. 2002,

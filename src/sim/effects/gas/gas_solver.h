@@ -21,10 +21,9 @@ namespace gloam {
 struct GasProperties {
   float ambient_temperature = 293;  ///< [K], (200, 400]
   /// Strength of vorticity confinement (Fedkiw, Stam and Jensen 2001), 0 = none. It gives back
-  /// eddies that a coarse grid loses, where flow is not smooth. How much is right depends on
-  /// voxels: at 0.1 m to 0.16 m plumes are too narrow and fast with 0, too wide with 1
-  /// (gas_flow_test.cc).
-  float vorticity = 0.4f;
+  /// eddies that a coarse grid loses, where flow is not smooth. With more than 0.2 plumes
+  /// in voxels of 0.1 m to 0.16 m are too wide (gas_flow_test.cc).
+  float vorticity = 0.2f;
   /// Share of its heat that warm gas loses per second to walls and by radiation [1/s].
   float cooling = 0.02f;
   float dissipation = 0;  ///< rate of deposition of smoke [1/s]
