@@ -1,6 +1,7 @@
 #pragma once
 // JSON as commands print it with --json.
 
+#include <cstdio>
 #include <nlohmann/json.hpp>
 #include <string>
 
@@ -13,6 +14,11 @@ namespace gloam::cli {
 template <class Json>
 std::string json_text(const Json& json, int indent = 2) {
   return printable(json.dump(indent, ' ', false, Json::error_handler_t::replace), "\n");
+}
+
+template <class Json>
+void put_json(const Json& json, int indent = 2) {
+  std::puts(json_text(json, indent).c_str());
 }
 
 }  // namespace gloam::cli

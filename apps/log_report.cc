@@ -36,7 +36,7 @@ int report_log(const std::string& file, const Globals& globals) {
                         {"type", topic.type},
                         {"messages", topic.messages},
                         {"rate_hz", topic.rate}});
-    std::printf("%s\n", json_text(json).c_str());
+    put_json(json);
     return log->damage.empty() ? 0 : 3;
   }
   say("{:.2f} MiB, {} messages in {} chunks, {:.2f} : 1; {:.3f} s; profile '{}', by '{}'\n",
@@ -68,7 +68,7 @@ int report_topics(const World& world, const Globals& globals) {
                       {"input", topic.is_input},
                       {"logged", topic.is_logged},
                       {"source", topic.source}});
-    std::printf("%s\n", json_text(json).c_str());
+    put_json(json);
     return 0;
   }
   say("  {:<5} {:<36} {:<34} {:<10} {}\n", "", "topic", "type", "rate", "of");

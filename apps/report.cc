@@ -31,7 +31,7 @@ int tell_of(const Result<RunReport>& report, const Globals& globals) {
         {"written", report->written},
         {"notes", report->notes},
         {"error", report->status.ok() ? "" : report->status.error().to_string()}};
-    std::printf("%s\n", json_text(json).c_str());
+    put_json(json);
   } else {
     say("simulated {:.3f} s in {:.1f} s ({:.2f} x real time), {} steps, state hash {:016x}\n",
         report->sim_time, report->wall_time, factor, report->steps, report->hash);

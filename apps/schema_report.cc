@@ -53,7 +53,7 @@ void print_json(const SchemaCoverage& coverage, const Count& attributes, const C
   }
   Json& by_attribute = json["attribute_fields"] = Json::object();
   for (const auto& attribute : coverage.attributes) by_attribute[attribute.name] = attribute.fields;
-  say("{}\n", json_text(json, 1));
+  put_json(json, 1);
 }
 
 // "mujoco/actuator/motor/gear" of thirty elements as "gear of actuator/motor, actuator/position …".

@@ -61,7 +61,7 @@ int list(const Globals& globals) {
                  {"limit_bytes", info->limit_bytes},
                  {"kinds", Json::array()}};
     for (const CacheKind& kind : info->kinds) json["kinds"].push_back(as_json(kind));
-    say("{}\n", json_text(json));
+    put_json(json);
     return 0;
   }
   say("{}: {} of at most {}\n", info->folder.string(), mebibytes(bytes),
@@ -85,7 +85,7 @@ int clear(const std::string& which, const Globals& globals) {
     if (!globals.json)
       say("{}: {} removed, {}\n", kind.name, entries_of(kind), mebibytes(kind.bytes));
   }
-  if (globals.json) say("{}\n", json_text(json));
+  if (globals.json) put_json(json);
   return 0;
 }
 

@@ -123,7 +123,7 @@ int check(const CheckCommand& command, const Globals& globals) {
   const size_t count = command.files.size();
   if (globals.json) {
     const Json json = {{"models", models}, {"passed", passed}, {"failed", count - passed}};
-    say("{}\n", json_text(json));
+    put_json(json);
   } else if (count > 1) {
     say("{} of {} passed\n", passed, count);
   }

@@ -85,7 +85,7 @@ int convert(ConvertCommand command, const Globals& globals) {
                                          {"max_distance", r.max_distance},
                                          {"seconds", r.seconds},
                                          {"notes", r.notes}};
-    say("{}\n", json_text(json));
+    put_json(json);
     return 0;
   }
   say("mesh       {} triangles, {}, {:.3g} x {:.3g} x {:.3g} m\n", r.triangles,

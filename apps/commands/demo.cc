@@ -104,7 +104,7 @@ int demo_adversity(const DemoCommand& command, const Globals& globals) {
     }
   }
   if (globals.json) {
-    std::printf("%s\n", json_text(json).c_str());
+    put_json(json);
   } else {
     tell("gloam: videos of both places are in {}\n", request.out.string());
   }

@@ -133,7 +133,7 @@ void print_json(const EvaluateCommand& command, const Evaluation& found) {
     json["rpe"]["delta_unit"] = command.unit;
     json["rpe"]["all_pairs"] = command.all_pairs;
   }
-  std::printf("%s\n", json_text(json).c_str());
+  put_json(json);
 }
 
 void print_row(const std::string& name, const PoseErrors& errors, double factor) {

@@ -60,7 +60,7 @@ void print_json(const WorldInfo& info, const NotDrawn& not_drawn,
                       {"hint", error.hint}});
     }
   }
-  std::printf("%s\n", json_text(json).c_str());
+  put_json(json);
 }
 
 void print_text(const WorldInfo& info, const NotDrawn& not_drawn,
@@ -135,7 +135,7 @@ void print_streams_json(const World& world) {
                      {"high", limits(input.high)},
                      {"unit", input.unit}});
   }
-  std::printf("%s\n", json_text(json).c_str());
+  put_json(json);
 }
 
 void print_streams(const World& world) {
@@ -173,7 +173,7 @@ int report_metrics(const World& world, const Globals& globals) {
     if (!globals.json)
       say("{:<40} {:<8} {}\n", metric.name, metric.unit, metric.declared ? "declared" : "built in");
   }
-  if (globals.json) std::printf("%s\n", json_text(json).c_str());
+  if (globals.json) put_json(json);
   return 0;
 }
 

@@ -25,7 +25,7 @@ int list_props(const Globals& globals) {
                       {"size", {p.size.x, p.size.y, p.size.z}},
                       {"mass", p.mass},
                       {"loose", p.loose}});
-    say("{}\n", json_text(json));
+    put_json(json);
     return 0;
   }
   size_t width = 4;

@@ -32,7 +32,7 @@ int recover(const RecoverCommand& command, const Globals& globals) {
                                          {"messages_lost", done->messages_lost},
                                          {"bytes_lost", done->bytes_lost},
                                          {"damage", done->damage}};
-    std::printf("%s\n", json_text(json).c_str());
+    put_json(json);
   } else {
     say("{}: {} messages kept, {} known to be lost, {} bytes not read\n", to.string(),
         done->messages, done->messages_lost, done->bytes_lost);

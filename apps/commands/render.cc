@@ -80,7 +80,7 @@ int render(const RenderCommand& command_line, const Globals& globals) {
         say("{}\n", file.string());
     }
   }
-  if (globals.json) std::printf("%s\n", json_text(json).c_str());
+  if (globals.json) put_json(json);
   return 0;
 }
 

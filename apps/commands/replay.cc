@@ -72,7 +72,7 @@ int record_variants(const ReplayCommand& command, LogReplay replay, const Global
     nlohmann::ordered_json json = nlohmann::ordered_json::array();
     for (const ReplayVariant& v : *variants)
       json.push_back({{"seed", v.seed}, {"out", v.out.string()}, {"was_done", v.was_done}});
-    std::printf("%s\n", json_text(json).c_str());
+    put_json(json);
   } else {
     for (const ReplayVariant& v : *variants)
       say("{}  seed {}{}\n", v.out.string(), v.seed, v.was_done ? "  (done before)" : "");
@@ -119,7 +119,7 @@ int replay(const ReplayCommand& command, const Globals& globals) {
         {"runs", found->runs},           {"steps", found->steps}, {"states", found->states},
         {"differing", found->differing}, {"run", found->run},     {"equal_step", found->equal_step},
         {"step", found->step},           {"where", found->where}, {"notes", found->notes}};
-    std::printf("%s\n", json_text(json).c_str());
+    put_json(json);
   } else {
     say("{} of {} steps differ ({} states compared in {} run{})\n", found->differing, found->steps,
         found->states, found->runs, found->runs == 1 ? "" : "s");

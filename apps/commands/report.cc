@@ -31,7 +31,7 @@ int write_page(const ReportCommand& command, const Globals& globals) {
                                    {"bytes", outcome->bytes},
                                    {"left_out", nlohmann::ordered_json::array()}};
     for (const Error& error : outcome->left_out) json["left_out"].push_back(error.to_string());
-    std::printf("%s\n", json_text(json).c_str());
+    put_json(json);
   } else {
     say("{}: {} run{}, {} pictures, {:.1f} MB\n", request.out.string(), outcome->runs,
         outcome->runs == 1 ? "" : "s", outcome->pictures,

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
+#include <fstream>
 #include <map>
 #include <optional>
 
@@ -19,6 +21,19 @@
 
 namespace gloam {
 namespace {
+
+// Room that the first summary takes, so that the last one has it on a disk that is full by then.
+constexpr size_t kSummaryRoom = 16 << 10;  // [bytes]
+
+// Puts a text into the room of the one before, where it fits.
+void overwrite(const std::filesystem::path& path, std::string text) {
+  std::error_code code;
+  const uintmax_t room = std::filesystem::file_size(path, code);
+  if (code || text.size() > room) return;
+  text.resize(room, ' ');
+  std::fstream file(path, std::ios::in | std::ios::out | std::ios::binary);
+  file.write(text.data(), static_cast<std::streamsize>(text.size()));
+}
 
 constexpr const char* kSensorsName = "sensors";
 constexpr size_t kQueuedRows = 4096;   // metric rows that may wait for the disk
@@ -49,7 +64,9 @@ class FolderRecorder : public Recorder {
     entries_.insert(entries_.end(), lidar_file_names_.begin(), lidar_file_names_.end());
     entries_.insert(entries_.end(), info_.beside.begin(), info_.beside.end());
     entries_.push_back(kSummaryName);
-    GLOAM_TRY_STATUS(write_summary(nullptr));
+    std::string summary = summary_text(nullptr);
+    summary.resize(std::max(summary.size(), kSummaryRoom), ' ');
+    GLOAM_TRY_STATUS(write_text(kSummaryName, summary));
     GLOAM_TRY_STATUS(write_text("cameras.json", cameras_json(info_.cameras, file_names_)));
     GLOAM_TRY_STATUS(write_text("labels.json", labels_json(info_.labels, info_.label_ids)));
     for (size_t i = 0; i < info_.cameras.size(); ++i) {
@@ -133,7 +150,7 @@ class FolderRecorder : public Recorder {
           options_.store->write_file(options_.folder / "contact_sheet.png",
                                      run_sheet_png(info_, outcome, cameras, rows_.items())));
     }
-    failure_.report(write_summary(&outcome));
+    finish_summary(outcome);
     return failure_.status();
   }
 
@@ -239,17 +256,23 @@ class FolderRecorder : public Recorder {
                                       {reinterpret_cast<const uint8_t*>(text.data()), text.size()});
   }
 
-  Status write_summary(const RunOutcome* outcome) {
+  void finish_summary(const RunOutcome& outcome) {
+    const Status status = write_text(kSummaryName, summary_text(&outcome));
+    if (status.ok()) return;
+    failure_.report(status);
+    overwrite(options_.folder / kSummaryName, summary_text(&outcome));
+  }
+
+  std::string summary_text(const RunOutcome* outcome) {
     std::vector<CameraCounts> counts, scans;
     for (size_t i = 0; i < info_.cameras.size(); ++i)
       counts.push_back(cameras_.counts(info_.cameras[i].name, file_names_[i]));
     for (size_t i = 0; i < info_.lidars.size(); ++i)
       scans.push_back(lidars_.counts(info_.lidars[i].name, lidar_file_names_[i]));
     const Status status = failure_.status();
-    return write_text(kSummaryName,
-                      summary_json(info_, outcome, counts, scans, sensor_file_names_, metric_rows_,
-                                   metrics_worker_ ? metrics_worker_->dropped() : 0, entries_,
-                                   status.ok() ? "" : status.error().to_string()));
+    return summary_json(info_, outcome, counts, scans, sensor_file_names_, metric_rows_,
+                        metrics_worker_ ? metrics_worker_->dropped() : 0, entries_,
+                        status.ok() ? "" : status.error().to_string());
   }
 
   const RecorderOptions options_;

@@ -48,22 +48,32 @@ bool merge(ControlMessage& waiting, const ControlMessage& next) {
   return false;
 }
 
-/// Is its first picture worth a smaller one before? A size of 0 is the camera's own.
-bool takes_long(const CameraRequest& request) {
-  const int pixels = request.width * request.height;
-  return request.render.tier == "fast" || pixels == 0 || pixels > kSmallWidth * kSmallHeight;
+/// Size of a request's pictures [px]; where it is the camera's own that of the scene's camera; 0 =
+/// not known.
+std::pair<int, int> size_of(const CameraRequest& request, const World& world) {
+  if (request.width > 0 && request.height > 0) return {request.width, request.height};
+  if (world.compiled() == nullptr) return {0, 0};
+  for (const CameraOptions& camera : world.scene().cameras)
+    if (camera.name == request.camera) return {camera.width, camera.height};
+  return {0, 0};
 }
 
-/// A picture soon, before the one that is asked for: a quarter of its width, and path traced, since
-/// the fast tier takes seconds to fill its cache before it shows anything.
-void make_preview(CameraRequest* request) {
+/// Makes a picture soon of a request for one that takes long: a quarter of its width, and path
+/// traced, since the fast tier takes seconds to fill its cache before it shows anything. False: it
+/// takes not long, or so much that it must be tried as it is, lest a lack of memory shows later.
+bool make_preview(const World& world, CameraRequest* request) {
   constexpr int kFraction = 4;
-  const bool is_known = request->width > 0 && request->height > 0;  // else the camera's own
-  request->width = is_known ? std::max(request->width / kFraction, 1) : kSmallWidth;
-  request->height = is_known ? std::max(request->height / kFraction, 1) : kSmallHeight;
+  constexpr int64_t kMostPixels = int64_t{16} << 20;
+  const auto [width, height] = size_of(*request, world);
+  const int64_t pixels = int64_t{width} * height;
+  const bool is_small = pixels > 0 && pixels <= kSmallWidth * kSmallHeight;
+  if ((is_small && request->render.tier != "fast") || pixels > kMostPixels) return false;
+  request->width = pixels > 0 ? std::max(width / kFraction, 1) : kSmallWidth;
+  request->height = pixels > 0 ? std::max(height / kFraction, 1) : kSmallHeight;
   if (request->render.tier == "fast") request->render.tier = "path";
   request->render.error.reset();
   request->render.spp = std::min(request->render.samples(), kPreviewSamples);
+  return true;
 }
 
 /// Pivot of a camera that sees nothing at its centre: the floor, or a step ahead [m].
@@ -328,8 +338,7 @@ Status Driver::open_stream(double scale) {
                         .height = coarse ? scaled(full_height_) : options_.height,
                         .render = options_.render};
   opened_scale_ = coarse ? scale : 1;
-  is_preview_ = publisher_.newest() == nullptr && takes_long(request);
-  if (is_preview_) make_preview(&request);
+  is_preview_ = publisher_.newest() == nullptr && make_preview(simulation_.world(), &request);
   opened_at_ = publisher_.sequence();
   // From the first picture on where its user left it.
   if (name == kFreeCamera) request.X_WC = orbit_ ? orbit_->pose() : free_start_;

@@ -13,6 +13,7 @@
 #include "base/check.h"
 #include "base/log.h"
 #include "base/memory.h"
+#include "scene/files/mujoco_compiles.h"
 
 namespace gloam {
 namespace {
@@ -24,6 +25,7 @@ thread_local jmp_buf* recovery_point = nullptr;
 thread_local char error_message[kLongestMessage] = "";
 thread_local MujocoWarningCapture* warning_capture = nullptr;
 std::atomic<int64_t> warning_count{0};
+std::atomic<int> compiles{0};
 
 void copy_message(const char* text) {
   std::snprintf(error_message, sizeof(error_message), "%s", text);
@@ -38,7 +40,8 @@ void copy_message(const char* text) {
 struct sigaction previous_abort = {};
 
 void on_abort(int signal) {
-  if (recovery_point != nullptr) end_out_of_memory(", or MuJoCo failed without a message");
+  if (recovery_point != nullptr || compiles > 0)
+    end_out_of_memory(", or MuJoCo failed without a message");
   ::sigaction(signal, &previous_abort, nullptr);  // abort() raises it again
   if (previous_abort.sa_handler != SIG_DFL && previous_abort.sa_handler != SIG_IGN) ::raise(signal);
 }
@@ -140,6 +143,9 @@ MujocoWarningCapture::~MujocoWarningCapture() { warning_capture = outer_; }
 void MujocoWarningCapture::add(const char* message) {
   if (messages_.size() < kMostWarnings) messages_.emplace_back(message);
 }
+
+MujocoCompiles::MujocoCompiles() { ++compiles; }
+MujocoCompiles::~MujocoCompiles() { --compiles; }
 
 namespace detail {
 

@@ -10,6 +10,7 @@
 #include "geometry/mesh/model_file.h"
 #include "places/generators.h"
 #include "places/writer/place_writer.h"
+#include "scene/files/mujoco_compiles.h"
 #include "scene/files/mujoco_guard.h"
 #include "scene/files/mujoco_plugins.h"
 #include "scene/files/urdf_text.h"
@@ -199,6 +200,7 @@ Status settle_nested_keyframes(const RobotOptions& robot, mjSpec* child, const M
   if (!has_nested_keyframes(child)) return {};
   mjModel* model = nullptr;
   const MujocoWarningCapture warnings;
+  const MujocoCompiles threads;
   const Status status = guarded([&] { model = mj_compile(child, files.vfs()); });
   const ModelPtr compiled(model);
   if (status.ok() && compiled != nullptr) return {};
@@ -340,6 +342,7 @@ Status compile(const Scene& scene, ModelFiles* files, Level* level, double weigh
   const int warnings_before = mjs_numWarnings(spec);
   const MujocoWarningCapture warnings;
   const ModelWatch watch("MuJoCo compiles the model", weight, 0, progress);
+  const MujocoCompiles threads;
   const Status status = guarded([&] { model = mj_compile(spec, vfs); });
   level->model.reset(model);
   const fs::path file = file_of(scene, "");

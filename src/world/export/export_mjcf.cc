@@ -14,6 +14,7 @@
 #include "base/log.h"
 #include "geometry/image/png_writer.h"
 #include "places/generators.h"
+#include "scene/files/mujoco_compiles.h"
 #include "scene/files/mujoco_guard.h"
 #include "world/compile/level.h"
 #include "world/compile/mesh_object.h"
@@ -101,6 +102,7 @@ class AssetWriter {
     mjs_setString(spec->modelfiledir, fs::absolute(folder_).c_str());
     mjModel* model = nullptr;
     const MujocoWarningCapture warnings;
+    const MujocoCompiles threads;
     GLOAM_TRY_STATUS(guarded([&] { model = mj_compile(spec, nullptr); }));
     const ModelPtr compiled(model);
     if (compiled == nullptr) return Error{ErrorKind::kUnsupported, mjs_getError(spec)};

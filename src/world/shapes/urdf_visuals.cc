@@ -8,6 +8,7 @@
 #include <set>
 
 #include "base/parallel.h"
+#include "scene/files/mujoco_compiles.h"
 #include "scene/files/mujoco_guard.h"
 #include "scene/files/urdf_text.h"
 #include "world/compile/model_loader.h"
@@ -73,6 +74,7 @@ Result<ModelPtr> compile_visuals(const std::vector<UrdfRobot>& robots, ModelFile
   mjModel* model = nullptr;
   mjSpec* spec = base.get();
   const mjVFS* vfs = files->vfs();
+  const MujocoCompiles threads;
   const Status compiled = guarded([&] { model = mj_compile(spec, vfs); });
   if (!compiled.ok()) return files->explain(compiled.error().message, robots[0].file);
   if (model == nullptr) return files->explain(mjs_getError(spec), robots[0].file);
