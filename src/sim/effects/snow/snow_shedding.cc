@@ -11,11 +11,11 @@
 namespace gloam {
 namespace {
 
-constexpr Rational kLookRate{50, 1};                     // [Hz]
-constexpr double kSlides = 30 * std::numbers::pi / 180;  // [rad]
-constexpr double kSlideTime = 0.3;                       // [s]
-constexpr double kNothing = 1e-4;                        // depth that is none [m]
-constexpr int kFirstVersions = 8;                        // of what Snapshots hold
+constexpr Rational kLookRate{50, 1};  // [Hz]
+constexpr double kDegree = std::numbers::pi / 180;
+constexpr double kBreaks = 15 * kDegree, kHolds = 7.5 * kDegree;
+constexpr double kSlideTime = 0.3;  // [s]
+constexpr int kFirstVersions = 8;   // of what Snapshots hold
 
 // Depth on level ground at the start [m]. Snow of a material has none: any will do.
 double depth_of(const Scene& scene) {
@@ -71,7 +71,7 @@ SnowShedding::SnowShedding(const EffectParts& parts, double depth, double growth
 void SnowShedding::reset(const EffectContext&) {
   tick_ = -1;
   level_ = start_;
-  for (Cover& cover : covers_) cover.ticks = 0, cover.depth = start_;
+  for (Cover& cover : covers_) cover.ticks = 0, cover.slides = 0, cover.depth = start_;
   shown_.reset();
 }
 
@@ -98,6 +98,17 @@ void SnowShedding::advance(const EffectContext& at) {
   show();
 }
 
+// What is left meanwhile comes to lie as the body is now.
+void SnowShedding::slide(double tilt, const double* up, double dt, Cover* cover) {
+  if (tilt > (cover->slides > 0 ? kHolds : kBreaks)) cover->slides = kSlideTime;
+  if (!(cover->slides > 0)) return;
+  cover->slides -= dt;
+  const double keep = std::exp(-dt / kSlideTime);
+  cover->depth *= keep;
+  for (int a = 0; a < 3; ++a) cover->rest[a] += (up[a] - cover->rest[a]) * (1 - keep);
+  mju_normalize3(cover->rest);
+}
+
 void SnowShedding::look(const mjModel& m, const mjData& d, double dt, Cover* cover) const {
   const double *p = d.xpos + 3 * cover->body, *R = d.xmat + 9 * cover->body;
   const double g = mju_norm3(m.opt.gravity);
@@ -113,13 +124,7 @@ void SnowShedding::look(const mjModel& m, const mjData& d, double dt, Cover* cov
   mju_normalize3(up);
   if (cover->ticks == 0) std::copy_n(up, 3, cover->rest);
   const double tilt = std::acos(std::clamp(dot3(up, cover->rest), -1.0, 1.0));
-  if (tilt + std::atan(spin * spin * cover->reach / g) > kSlides) {
-    cover->depth *= std::exp(-dt / kSlideTime);
-    if (cover->depth < kNothing) {
-      cover->depth = 0;
-      std::copy_n(up, 3, cover->rest);
-    }
-  }
+  slide(tilt + std::atan(spin * spin * cover->reach / g), up, dt, cover);
   std::copy_n(cover->p[0], 3, cover->p[1]);
   std::copy_n(p, 3, cover->p[0]);
   std::copy_n(R, 9, cover->R);

@@ -3,9 +3,11 @@
 //
 // Dry snow holds by friction. On a body the apparent weight, gravity less the acceleration, turns:
 // with the body's tilt, with pushes, and outwards with spin. A cover lies while that stays within
-// 30 degrees of where it was when the snow came to lie, the slope from which EN 1991-1-3, 5.3
-// (roofs) takes it to slide; beyond, it slides off within a few tenths of a second. What falls
-// later lies as the body is then. Each body is looked at 50 times a second, as a whole.
+// 15 degrees of where it was when the snow came to lie, the slope up to which smooth cold roofs
+// keep theirs (ASCE 7-16, figure 7.4-1). Once loose it slides on, with a time constant of 0.3 s,
+// until there are less than half of these degrees for so long: snow that moves has less friction
+// (Bowden 1953, "Friction on snow and ice"). What falls or stays then lies as the body is. Each
+// body is looked at 50 times a second, as a whole.
 
 #include <memory>
 #include <vector>
@@ -36,8 +38,10 @@ class SnowShedding final : public Effect {
     double p[2][3] = {};  // places at the last ticks, the newest first [m]
     double R[9] = {};     // attitude at the last tick
     int ticks = 0;        // that p and R hold
+    double slides = 0;    // for how long yet [s]
   };
   SnowShedding(const EffectParts& parts, double depth, double growth);
+  static void slide(double tilt, const double* up, double dt, Cover* cover);
   void look(const mjModel& model, const mjData& data, double dt, Cover* cover) const;
   void show();
 
