@@ -32,7 +32,8 @@ struct ExposureOptions {
 };
 
 /// [camera.imager.auto_exposure]: meters a picture of 32 pixels' width of its own at the camera's
-/// rate, from the start of the simulation on. Reflected-light meter of ISO 2720.
+/// rate, from the start of the simulation on; a picture is exposed by the last one before it. The
+/// reflected-light meter of ISO 2720.
 struct AutoExposureOptions {
   double time_constant = 0.5;  ///< time constant of the approach to the metered exposure value [s]
   double compensation = 0;     ///< brighter by so many stops [EV]
@@ -76,7 +77,7 @@ struct ImagerOptions {
   std::optional<PixelOptions> pixel = {};
   std::string mosaic = "none";     ///< none rggb bggr grbg gbrg mono: colours of the top left 2 x 2
   Vec3 white_balance = {1, 1, 1};  ///< gains that make the sensor's red, green, blue neutral, >= 1
-  std::string curve = "neutral";   ///< neutral | srgb: rolls highlights off, or clips them
+  std::string curve = "neutral";   ///< neutral | srgb: rolls off what is above white, or clips it
   int jpeg = 0;                    ///< quality of the compression, 1 … 100; 0 = none
   uint64_t seed = 0;               ///< beside the simulation's and the camera's name
   SourceLoc loc = {};

@@ -65,7 +65,7 @@ struct LidarOptions {
   std::vector<std::string> hide = {};
   std::vector<LidarSurfaceOptions> surfaces = {};
 
-  /// Errors of range and amplitude, drop-outs at the threshold, speckle of what media send back.
+  /// Errors of range and amplitude, drop-outs at the threshold.
   bool noise = false;
   std::optional<double> range_noise = {};  ///< standard deviation where the signal is strong [m]
 
