@@ -153,7 +153,7 @@ TEST(Gait, JointAnglesAreWithinOneDeviationOfPublishedOnes) {
   }
 }
 
-TEST(Gait, SlowAndFastItIsWithinTwoDeviations) {
+TEST(Gait, AtOtherSpeedsItIsWithinTwoDeviations) {
   const PersonShape shape = draw_person(3, 1.7);
   expect_within(Walked(shape, 0.6), kVerySlowGait, 2, "0.6 m/s");
   expect_within(Walked(shape, 2.0), kVeryFastGait, 2, "2 m/s");

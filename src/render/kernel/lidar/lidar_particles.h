@@ -105,11 +105,10 @@ class CellParticles {
     float sum = 0;
     for (uint32_t i = cell_.first; i < set_.classes.size; ++i) sum += set_.classes[i].number;
     float left = u * sum;
-    for (uint32_t i = cell_.first; i + 1 < set_.classes.size; ++i) {
-      if (left < set_.classes[i].number) return i;
+    uint32_t i = cell_.first;
+    for (; i + 1 < set_.classes.size && left >= set_.classes[i].number; ++i)
       left -= set_.classes[i].number;
-    }
-    return set_.classes.size - 1;
+    return i;
   }
 
   const LidarOptics& optics_;
