@@ -9,7 +9,7 @@
 #include "gloam/scene.h"
 #include "runtime/live_simulation.h"
 #include "runtime/sensing_quality.h"
-#include "runtime/visibility_probe.h"
+#include "sensors/probe/visibility_probe.h"
 #include "sensors/lidar/lidar_sensor.h"
 #include "sim/snapshots/pose_solver.h"
 

@@ -97,7 +97,7 @@ TEST(GasForces, ALightBallFallsAtItsTerminalSpeedThroughARisingStream) {
 TEST(GasForces, AModelWithoutAFluidFeelsThePublishedDrag) {
   const double fall =
       std::sqrt(2 * 1.5e-3 * 9.81 / (kAirDensity * 0.47 * M_PI * 0.04 * 0.04));  // [m/s]
-  for (const float wind : {0.0f, 5.0f, 8.0f}) {
+  for (const float wind : {0.0f, 3.0f, 5.0f}) {  // with more it leaves the stream
     Stream stream(ball_model(1.5e-3, 0.04), {0, 0, wind}, 293, false);
     stream.run(1000);
     EXPECT_NEAR(stream.data->qvel[2], double(wind) - fall, 0.03 * fall)
