@@ -105,10 +105,12 @@ class CellParticles {
     float sum = 0;
     for (uint32_t i = cell_.first; i < set_.classes.size; ++i) sum += set_.classes[i].number;
     float left = u * sum;
-    uint32_t i = cell_.first;
-    for (; i + 1 < set_.classes.size && left >= set_.classes[i].number; ++i)
+    const uint32_t last = set_.classes.size - 1;
+    for (uint32_t i = cell_.first; i < last; ++i) {
+      if (left < set_.classes[i].number) return i;
       left -= set_.classes[i].number;
-    return i;
+    }
+    return last;
   }
 
   const LidarOptics& optics_;
