@@ -394,6 +394,7 @@ class Work(ProgramTest):
         """Starts the program, waits until started() holds, sends it the signal; returns its exit code and stderr."""
         with open(self.folder / "stderr.txt", "w") as stderr:
             process = subprocess.Popen([str(PROGRAM), *map(str, arguments)], cwd=self.folder, stdout=subprocess.DEVNULL, stderr=stderr,
+                                       preexec_fn=lambda: signal.signal(signal.SIGHUP, signal.SIG_DFL),  # nohup has it ignored
                                        env={**os.environ, "GLOAM_CACHE": str(self.folder / "cache"), "TMPDIR": str(self.folder)})
         self.addCleanup(process.wait)
         self.addCleanup(process.kill)  # before the other; does nothing to one that has ended

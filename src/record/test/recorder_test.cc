@@ -610,13 +610,13 @@ TEST_F(RecorderTest, ARealLimitOfTheSystemIsReportedWithFileAndCause) {
   const pid_t child = fork();
   if (child == 0) {
     std::signal(SIGXFSZ, SIG_IGN);
-    const rlimit limit{4000, 4000};
+    const rlimit limit{20000, 20000};  // a summary keeps room
     setrlimit(RLIMIT_FSIZE, &limit);
     RecorderOptions o = options();
     o.outputs = {"video"};
     auto recorder = Recorder::start(o, run_info());
     if (!recorder.ok()) _exit(10);
-    feed(recorder->get(), 40);
+    feed(recorder->get(), 300);
     const Status status = (*recorder)->finish({});
     if (status.ok()) _exit(11);
     std::ofstream(message) << status.error().to_string();

@@ -44,7 +44,7 @@ quantity = "illuminance"
 body = "box"
 position = [0, 0, 0.2]
 )",
-                                  "<body name='box' pos='2 0 1' euler='0 -45 0'>"
+                                  "<body name='box' pos='-2 0 1' euler='0 45 0'>"
                                   "<geom type='box' size='.1 .1 .1'/></body>");
   const auto read = read_probes(world, {"under", "aside", "tilted", "below", "on_its_side"}, 0.1);
   const auto last = [&](size_t i) { return read[i].back().values[0]; };

@@ -94,7 +94,8 @@ class CollectedUnlocked {
 };
 using CollectedFrames = CollectedUnlocked<std::shared_ptr<const CameraFrame>>;
 
-// 4 stops more light in the new World: the exposure approaches them from where it was; an event
+// 4 stops more light in the new World: the exposure approaches them from where it was, a metering
+// later; an event
 // camera begins anew, so that the change of Worlds is no change of light to it; samples and scans
 // keep their numbers.
 TEST(RecompileSensing, ExposureGoesOnAndEventsBeginAnew) {
@@ -122,7 +123,7 @@ TEST(RecompileSensing, ExposureGoesOnAndEventsBeginAnew) {
   ASSERT_EQ(eye_frames.all().size(), 23u) << "0 … 440";
   const double before = eye_frames.all()[12]->ev100;  // at 0.48 s, at rest
   for (size_t k = 13; k <= 20; ++k) {
-    const double share = 1 - std::exp(-0.04 / 0.1 * static_cast<double>(k - 12));
+    const double share = 1 - std::exp(-0.04 / 0.1 * static_cast<double>(k - 13));
     EXPECT_NEAR(eye_frames.all()[k]->ev100 - before, 4 * share, 0.15) << "frame " << k;
   }
   ASSERT_EQ(dvs_frames.all().size(), 46u) << "0 … 450";

@@ -184,8 +184,8 @@ TEST(LidarInMedia, FalseReturnsComeAsOftenAsTheReceiversNoiseSays) {
     options.range_at_10_percent = std::sqrt(0.1 * ratio / signal);
     const auto scan = scan_scene(b, options);
     constexpr double n = 160 * 160;
-    // `ratio` = threshold over signal; sigma = threshold / 12.
-    const double expected = 0.5 * std::erfc(12 * (ratio - 1) / ratio / std::sqrt(2.0));
+    // `ratio` = signal over threshold; sigma = threshold / 12.
+    const double expected = 0.5 * std::erfc(12 * (1 - ratio) / std::sqrt(2.0));
     EXPECT_NEAR(static_cast<double>(scan->size()) / n, expected,
                 3 * std::sqrt(expected * (1 - expected) / n) + 1e-3)
         << ratio;
