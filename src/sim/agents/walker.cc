@@ -8,10 +8,9 @@ namespace gloam {
 namespace {
 
 constexpr double kDegree = M_PI / 180;
-constexpr double kUsualSpeed = 1.3;         // speed that amplitudes are given for [m/s]
-constexpr double kWalkRatio = 0.0063;       // step length / cadence of people of 1.7 m [m min]
-constexpr double kSlowestCadence = 1.2;     // [1/s]
-constexpr double kToe = 0.7, kHeel = 0.22;  // pivots from the ankle, fractions of the foot
+constexpr double kUsualSpeed = 1.3;      // speed that amplitudes are given for [m/s]
+constexpr double kWalkRatio = 0.0063;    // step length / cadence of people of 1.7 m [m min]
+constexpr double kSlowestCadence = 1.2;  // [1/s]
 constexpr double kStands = 0.06, kStarts = 0.09;  // [m/s]
 constexpr double kReach = 0.9995;  // fraction of a leg's length: a knee is never quite straight
 constexpr double kStandingKnee = 0.002;  // descent of the hips while standing, of their height
