@@ -9,8 +9,8 @@
 #include "gloam/scene.h"
 #include "runtime/live_simulation.h"
 #include "runtime/sensing_quality.h"
-#include "sensors/probe/visibility_probe.h"
 #include "sensors/lidar/lidar_sensor.h"
+#include "sensors/probe/visibility_probe.h"
 #include "sim/snapshots/pose_solver.h"
 
 namespace gloam {

@@ -17,13 +17,14 @@ namespace {
 //   m²/g, albedo 0.89 and g 0.70 at 550 nm; other visible and near bands by its Ångström exponent
 //   1.4, far infrared by its insoluble part and what the rest absorbs.
 // dust: Mie theory (Bohren and Huffman 1983) of mineral grains. Refractive index in the
-//   visible: mean of 19 soils of eight regions, n 1.52, k 0.0033, 0.0024, 0.0018, 0.0012, 0.0010, 0.0009, 0.0009
-//   at 370, 470, 520, 590, 660, 880, 950 nm (Di Biagio et al. 2019, table 4), the last of them held
-//   to 1550 nm; from 8 to 14 µm "mineral" of OPAC (after Volz 1973). Sizes: coarse mode over Cape
-//   Verde, log-normal about a radius of 1.90 µm by volume, ln sigma 0.60 (Dubovik et al. 2002,
-//   "Variability of absorption and optical properties of key aerosol types observed in worldwide
-//   locations", table 1); 2600 kg/m³ (OPAC). Sun photometers found an albedo of 0.92 to 0.93 at 440
-//   nm and of 0.95 to 0.98 at 670 nm over three deserts, and g 0.66 to 0.73 (there).
+//   visible: mean of 19 soils of eight regions, n 1.52, k 0.0033, 0.0024, 0.0018, 0.0012, 0.0010,
+//   0.0009, 0.0009 at 370, 470, 520, 590, 660, 880, 950 nm (Di Biagio et al. 2019, table 4), the
+//   last of them held to 1550 nm; from 8 to 14 µm "mineral" of OPAC (after Volz 1973). Sizes:
+//   coarse mode over Cape Verde, log-normal about a radius of 1.90 µm by volume, ln sigma 0.60
+//   (Dubovik et al. 2002, "Variability of absorption and optical properties of key aerosol types
+//   observed in worldwide locations", table 1); 2600 kg/m³ (OPAC). Sun photometers found an albedo
+//   of 0.92 to 0.93 at 440 nm and of 0.95 to 0.98 at 670 nm over three deserts, and g 0.66 to 0.73
+//   (there).
 // clang-format off: a line per medium: name, mass extinction, albedo, g
 const MediumDescription kPresets[] = {
     {"smoke", {9000, 10000, 11800, 6090, 3550, 514}, {.23f, .25f, .27f, .17f, .09f, .01f}, {.58f, .6f, .64f, .48f, .3f, .02f}},
