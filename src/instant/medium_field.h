@@ -27,13 +27,11 @@ class MediumField {
   /// To be called before the others, by each thread.
   void wait() const { done_.wait(false, std::memory_order_acquire); }
 
-  const VolumeGrid& density() const {
-    return density_;
-  }  ///< outside of flames [kg/m³]; null = clear
+  /// Density outside of flames [kg/m³]; null = clear.
+  const VolumeGrid& density() const { return density_; }
   const VolumeGrid& temperature() const { return temperature_; }  ///< [K]
-  const VolumeGrid& flame() const {
-    return flame_;
-  }  ///< absorption by flames [1/m]; null = nothing burns
+  /// Absorption by flames [1/m]; null = nothing burns.
+  const VolumeGrid& flame() const { return flame_; }
   /// Velocities of cells' centres [m/s], world, (nz, ny, nx, 3); null = no moving thing is
   /// affected.
   const VolumeGrid& velocity() const { return velocity_; }

@@ -100,7 +100,7 @@ class LiveSimulation final : public Simulation {
   /// All sensors of the model in one stream.
   Result<std::unique_ptr<LiveSensors>> open_all_sensors(bool required, SensorCallback on_message);
   const ExposureMeters& meters() const { return meters_; }
-  /// What its probes read; as long as it lives.
+  /// Sources of its probes' readings; valid while it lives.
   ProbeSources probe_sources();
   Result<std::unique_ptr<LiveLidar>> open_live_lidar(const LidarRequest& request,
                                                      ScanCallback on_scan);

@@ -94,7 +94,8 @@ TEST(FireLight, GrowsWithTheHeatAndNeverBeyondPlancksLaw) {
     EXPECT_LE(light.brightest, planck) << powers[i] << " W";
   }
   for (int i = 0; i < 4; ++i) EXPECT_NEAR(per_watt[i] / mean, 1, 0.2) << powers[i] << " W";
-  // What thin flames of 100 kW give: χ of the heat, by Planck's law from kFlameTemperature.
+  // Light of thin flames: a fraction χ of the heat is radiated, by Planck's law at
+  // kFlameTemperature.
   const double radiance = 5.670374e-8 * std::pow(double{kFlameTemperature}, 4) / kPi;
   const double thin = 0.29 / (4 * kPi * 36) * planck / radiance;  // [lx/W]
   EXPECT_LT(per_watt[0], thin);

@@ -1,4 +1,4 @@
-// What probes are read as: tables, topics, metrics, lists; and what is refused.
+// Outputs of probes: tables, topics, metrics, lists; and scenes that are refused.
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>

@@ -24,8 +24,8 @@ struct ProbeRenderer {
   std::mutex* mutex = nullptr;  ///< held while `renderer` works
 };
 
-/// What probes ask of the simulation that they are in. Called on a stream's thread, when a probe
-/// that needs it is opened or read.
+/// Answers of the simulation to its probes. Called on a stream's thread, when a probe that needs
+/// one is opened or read.
 struct ProbeSources {
   using WorldPtr = std::shared_ptr<const CompiledWorld>;
   /// Error: the scene cannot be rendered.

@@ -130,7 +130,7 @@ TEST(WindOnBodies, DriftEndsAtTheWindsSpeed) {
   EXPECT_NEAR(late, 5, 0.1);
 }
 
-// What asks for MuJoCo's model of a fluid gets it, to the last bit but for rounding.
+// Models that ask for MuJoCo's fluid get it, equal but for rounding.
 TEST(WindOnBodies, LeavesAModelWithAFluidOfItsOwnToMujoco) {
   for (const char* fluid : {" density='1.2' viscosity='1.8e-5'", ""}) {
     const char* shape = fluid[0] == 0 ? " fluidshape='ellipsoid'" : "";

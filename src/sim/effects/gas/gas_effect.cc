@@ -188,7 +188,7 @@ void GasEffect::read_field(MediumField* to) const {
     std::vector<float> power;
     solver_->read_heat_release(&power);
     for (size_t c = 0; c < power.size(); ++c) {
-      // What is radiated of the heat has passed the smoke that flames hold.
+      // Smoke within flames is left out: the radiated fraction of the heat has passed it.
       density[c] *= 1 - min(power[c] * (1 / kFlameHeatRelease), 1.0f);
       power[c] *= gas().flame_absorption;
     }

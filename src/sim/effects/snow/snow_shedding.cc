@@ -98,7 +98,7 @@ void SnowShedding::advance(const EffectContext& at) {
   show();
 }
 
-// What is left meanwhile comes to lie as the body is now.
+// Snow that is left while it slides comes to lie as the body is now.
 void SnowShedding::slide(double tilt, const double* up, double dt, Cover* cover) {
   if (tilt > (cover->slides > 0 ? kHolds : kBreaks)) cover->slides = kSlideTime;
   if (!(cover->slides > 0)) return;
