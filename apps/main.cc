@@ -26,12 +26,8 @@ constexpr std::array kCommands = {add_demo,     add_run,     add_record, add_rep
 
 /// Variables of the environment that hold what they must.
 Status check_environment() {
-  const char* size = std::getenv("GLOAM_CACHE_SIZE");
-  if (size == nullptr || *size == 0) return {};
-  const Result<CacheInfo> cache = cache_info();
-  // What else is wrong with a cache keeps nobody from working.
-  if (!cache.ok() && cache.error().message.starts_with("GLOAM_CACHE_SIZE")) return cache.error();
-  return {};
+  const Result<uint64_t> limit = cache_limit();
+  return limit.ok() ? Status() : Status(limit.error());
 }
 
 int run_program(int argc, char** argv) {

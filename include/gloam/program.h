@@ -46,7 +46,10 @@ struct CacheInfo {
   uint64_t limit_bytes = 0;      ///< limit for all kinds together: $GLOAM_CACHE_SIZE, else 10 GiB
   std::vector<CacheKind> kinds;
 };
-/// Errors: a folder that cannot be read, GLOAM_CACHE_SIZE is no size.
+/// Bytes that all entries together may have: $GLOAM_CACHE_SIZE, as 500M or 20G (powers of 1024), 0
+/// for none, else 10 GiB. Errors: it is set to what is no size.
+Result<uint64_t> cache_limit();
+/// Errors: a folder that cannot be read, those of cache_limit().
 Result<CacheInfo> cache_info();
 /// Removes all entries, or those of one kind, and says what they were; files that are no entries
 /// stay. Errors: there is no such kind, a folder or an entry that may not be changed.

@@ -50,10 +50,6 @@ std::filesystem::path cache_folder(const CacheFormat& format);
 /// Name of the entry's file.
 std::string cache_entry_name(const CacheFormat& format, uint64_t key);
 
-/// Bytes that all entries together may have: $GLOAM_CACHE_SIZE, as 500M or 20G (powers of 1024), 0
-/// for none, else 10 GiB. Errors: it is set to what is no size.
-Result<uint64_t> cache_limit();
-
 /// Keeps `bytes`, which begin with kCacheMagic, in the file `entry`, then drops what was used
 /// longest ago. A cache that cannot be written is no error, and what is larger than all may be is
 /// not kept.
