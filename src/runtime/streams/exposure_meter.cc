@@ -131,13 +131,9 @@ Status ExposureMeter::meter(const Snapshot& snapshot) {
   return {};
 }
 
-int64_t ExposureMeter::instant_before(int64_t step) const {
-  return timing_.step_of(std::max<int64_t>(0, timing_.last_at_or_before(step - 1)));
-}
-
 double ExposureMeter::ev100_at(int64_t step) {
   std::unique_lock lock(mutex_);
-  const int64_t due = instant_before(step);
+  const int64_t due = instant_of(step - 1);
   const auto known = [&] {
     return ended_ || values_.contains(due) || (!values_.empty() && values_.begin()->first > due);
   };

@@ -48,10 +48,8 @@ class ExposureMeter {
   Status follow(const std::shared_ptr<const CompiledWorld>& world);
   Status take(const Snapshot& snapshot);
   Status meter(const Snapshot& snapshot);
-  // The last step of the schedule that is not after `step`.
+  // The last step of the schedule that is not after `step`, or its first.
   int64_t instant_of(int64_t step) const;
-  // The last step of the schedule before `step`, or its first.
-  int64_t instant_before(int64_t step) const;
 
   Simulator& simulator_;
   SharedRenderers& renderers_;

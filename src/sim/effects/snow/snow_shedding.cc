@@ -6,6 +6,7 @@
 
 #include "base/hash.h"
 #include "sim/effects/bodies/body_forces.h"
+#include "sim/effects/shared_version.h"
 #include "world/weather/fallen_snow.h"
 
 namespace gloam {
@@ -142,10 +143,7 @@ void SnowShedding::show() {
     return std::abs(left(cover) - before) < kSeen;
   });
   if (is_same) return;
-  // lock() sees what the last reader did before it let go; use_count() alone need not.
-  auto free = std::find_if(pool_.begin(), pool_.end(), [](const auto& version) {
-    return version.use_count() == 1 && std::weak_ptr<std::vector<float>>(version).lock() != nullptr;
-  });
+  auto free = std::find_if(pool_.begin(), pool_.end(), is_free<std::vector<float>>);
   if (free == pool_.end()) {  // readers hold all
     pool_.push_back(std::make_shared<std::vector<float>>(*pool_.front()));
     free = pool_.end() - 1;

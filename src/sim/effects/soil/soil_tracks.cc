@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "sim/effects/shared_version.h"
+
 namespace gloam {
 namespace {
 constexpr int kFirstVersions = 4;
@@ -52,11 +54,8 @@ void SoilTracks::publish() {
   for (Version& version : versions_) version.stale.add(changed_);
   changed_ = nothing();
   shown_.reset();
-  // lock() sees what the last reader did before it let go; use_count() alone need not.
-  auto free = std::find_if(versions_.begin(), versions_.end(), [](const Version& version) {
-    return version.heights.use_count() == 1 &&
-           std::weak_ptr<SurfaceHeights>(version.heights).lock() != nullptr;
-  });
+  auto free = std::find_if(versions_.begin(), versions_.end(),
+                           [](const Version& version) { return is_free(version.heights); });
   if (free == versions_.end()) {  // readers hold all
     versions_.push_back({std::make_shared<SurfaceHeights>(), everything()});
     free = versions_.end() - 1;

@@ -6,6 +6,7 @@
 
 #include "base/hash.h"
 #include "base/wave_math.h"
+#include "sim/effects/shared_version.h"
 
 namespace gloam {
 namespace {
@@ -142,10 +143,7 @@ bool WaterRipples::settle() {
 }
 
 void WaterRipples::publish() {
-  // lock() sees what the last reader did before it let go; use_count() alone need not.
-  auto free = std::find_if(pool_.begin(), pool_.end(), [](const auto& field) {
-    return field.use_count() == 1 && std::weak_ptr<SurfaceHeights>(field).lock() != nullptr;
-  });
+  auto free = std::find_if(pool_.begin(), pool_.end(), is_free<SurfaceHeights>);
   if (free == pool_.end()) {  // readers hold all
     pool_.push_back(std::make_shared<SurfaceHeights>());
     free = pool_.end() - 1;
