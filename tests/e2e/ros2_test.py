@@ -185,6 +185,7 @@ ip link set card1 up
 ip addr add 10.9.9.1/24 dev card0
 ip link set card0 up multicast on
 ip route add 224.0.0.0/4 dev card0
+{PROGRAM} run {ROOT / "examples" / "two_robots.toml"} --duration 0.01 --output state --out $(mktemp -d) >/dev/null 2>&1  # fills the cache
 {PROGRAM} run {ROOT / "examples" / "two_robots.toml"} --ros2 --set bridge.ros2.network=true --duration 60 2>/dev/null &
 run=$!
 {self.ros.python} {PROBE} listen 6 /clock &

@@ -163,15 +163,9 @@ Status LogRecorder::open_streams(const std::vector<TopicInfo>& topics) {
 }
 
 // Log time goes on over resets: a run begins where the one before ended.
-uint64_t LogRecorder::log_time(double time, int64_t run) {
-  const std::lock_guard lock(time_mutex_);
-  if (run < 0) run = static_cast<int64_t>(run_starts_.size()) - 1;  // the present one
-  while (static_cast<int64_t>(run_starts_.size()) <= run) {
-    run_starts_.push_back(run_starts_.back() + run_end_);
-    run_end_ = 0;
-  }
-  if (run + 1 == static_cast<int64_t>(run_starts_.size())) run_end_ = std::max(run_end_, time);
-  const double at = run_starts_[static_cast<size_t>(run)] + time;
+uint64_t LogRecorder::log_time(double time, int64_t run) const {
+  const RunEnds& ends = simulation_.simulator().run_ends();
+  const double at = ends.start_of(run) - ends.start_of(first_run_) + time;
   return static_cast<uint64_t>(std::llround(std::max(0.0, at) * 1e9));
 }
 

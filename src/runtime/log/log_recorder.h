@@ -37,7 +37,7 @@ class LogRecorder {
   };
 
   LogRecorder(LiveSimulation& simulation, const LogRequest& request)
-      : simulation_(simulation), request_(request) {}
+      : simulation_(simulation), request_(request), first_run_(simulation.latest().data().run) {}
   Status add_channels(const std::vector<TopicInfo>& topics);
   Status add_channel(const TopicInfo& topic, const std::string& encoding, const std::string& schema,
                      const std::string& hash);
@@ -52,16 +52,14 @@ class LogRecorder {
   void write_new_world(const Snapshot& now);
   void write_state(const Snapshot& now);
   void write(const std::string& topic, double time, int64_t run, std::span<const uint8_t> data);
-  uint64_t log_time(double time, int64_t run);
+  uint64_t log_time(double time, int64_t run) const;
 
   LiveSimulation& simulation_;
   const LogRequest request_;
   std::unique_ptr<LogQueue> queue_;
-  std::map<std::string, Channel> channels_;  // by topic
-  std::map<std::string, uint16_t> schemas_;  // by message type
-  std::mutex time_mutex_;
-  std::vector<double> run_starts_ = {0};        // where runs begin in the log's time [s]
-  double run_end_ = 0;                          // latest time of the present run [s]
+  std::map<std::string, Channel> channels_;     // by topic
+  std::map<std::string, uint16_t> schemas_;     // by message type
+  const int64_t first_run_;                     // in which the log began
   std::shared_ptr<const CompiledWorld> world_;  // that was written last
   int64_t world_run_ = -1;                      // run in which it was looked for last
   int64_t last_run_ = -1, last_step_ = -1;      // of the last state that was written

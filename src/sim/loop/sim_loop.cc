@@ -195,8 +195,13 @@ void SimLoop::reset() {
   begin_run();
 }
 
-void SimLoop::begin_run() {
+void SimLoop::end_run(double time) {
+  run_ends_.end_run(time);
   ++run_;
+}
+
+void SimLoop::begin_run() {
+  end_run(stepper_->time());
   scene_cursor_ = 0;
   while (replay_cursor_ < replay_.size() && replay_[replay_cursor_].run < run_) ++replay_cursor_;
   std::fill(goals_.begin(), goals_.end(), VelocityTarget{});
@@ -215,7 +220,7 @@ void SimLoop::begin_run() {
 }
 
 void SimLoop::jump(int64_t step) {
-  ++run_;
+  end_run(stepper_->time());
   if (!stepper_->jump(step)) return;
   stepper_->set_run(run_);
   for (Subscription& s : subscriptions_) s.begin(stepper_->step_count());
@@ -239,7 +244,9 @@ std::unique_ptr<LoopState> SimLoop::save() const {
 
 Status SimLoop::restore(const LoopState& saved, const RunRecord& record) {
   GLOAM_CHECK(saved.controllers.size() == controllers_.size(), "controllers of the same World");
+  const double end = stepper_->time();
   if (!stepper_->restore(*saved.stepper)) return stepper_->error();
+  end_run(end);
   for (size_t i = 0; i < controllers_.size(); ++i) {
     const LoopState::Slot& from = saved.controllers[i];
     controllers_[i].controller = from.controller->clone();
@@ -254,6 +261,7 @@ Status SimLoop::restore(const LoopState& saved, const RunRecord& record) {
 }
 
 void SimLoop::adopt(SimLoop& made, const RunRecord& record) {
+  end_run(stepper_->time());
   std::swap(stepper_, made.stepper_);
   std::swap(controllers_, made.controllers_);
   std::swap(scene_commands_, made.scene_commands_);
@@ -265,7 +273,6 @@ void SimLoop::adopt(SimLoop& made, const RunRecord& record) {
 }
 
 void SimLoop::begin_run_at(const RunRecord& record) {
-  ++run_;
   stepper_->set_run(run_);
   chapters_ = record.chapters;
   run_seed_ = record.seed;

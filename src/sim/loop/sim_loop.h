@@ -7,6 +7,7 @@
 
 #include "sim/commands/command_queue.h"
 #include "sim/loop/next_world.h"
+#include "sim/loop/run_ends.h"
 #include "sim/loop/run_record.h"
 #include "sim/snapshots/subscription.h"
 #include "sim/state/correspondence.h"
@@ -67,6 +68,7 @@ class SimLoop {
   const Stepper& stepper() const { return *stepper_; }
   Rational timestep() const { return timestep_; }
   int64_t run() const { return run_; }
+  const RunEnds& run_ends() const { return run_ends_; }
   /// Snapshots that best-effort subscriptions have lost.
   int64_t dropped() const;
   void close_queues();
@@ -77,6 +79,7 @@ class SimLoop {
   void run_controllers();
   void run_hook();
   void begin_run();
+  void end_run(double time);
   void begin_run_at(const RunRecord& record);
   void take_over_goals(const Correspondence& same);
   void find_next_publication();
@@ -99,6 +102,7 @@ class SimLoop {
   int64_t first_step_ = 0;
   std::vector<StepInput> earlier_inputs_;
   int64_t run_ = 0;
+  RunEnds run_ends_;
   int64_t next_publication_ = 0;  // earliest `due` of the subscriptions
   int64_t dropped_by_closed_ = 0;
 };

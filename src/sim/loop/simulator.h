@@ -96,6 +96,8 @@ class Simulator {
   Status set_step_hook(StepHook hook);
   /// From now on what the step hook writes is kept there; null = no longer.
   void keep_hook_inputs(std::shared_ptr<HookInputs> inputs);
+  /// Where its runs lie in a time that goes on over resets; on all threads.
+  const RunEnds& run_ends() const { return loop_.run_ends(); }
   /// Goes on in another World between two steps, with the state of what remains (state_transfer.h),
   /// the Commands that wait (Correspondence::translate), all subscriptions (their next Snapshots
   /// are of the new World; windows that have begun are lost) and these controllers. Error: then the
