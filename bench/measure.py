@@ -327,6 +327,34 @@ def fast_tier(quick):
     yield at_most("fast tier: 95th percentile of LDR-FLIP, worst scene", p95, 0.25, "of the same pictures")
 
 
+def truth_at_few_samples(quick):
+    """mean light of denoised pictures of few samples, and of the fast tier, against many samples in the examples"""
+    names = os.environ.get("GLOAM_BENCH_SCENES", "house,office" if quick else "")
+    every = sorted(p for p in (ROOT / "examples").glob("*.toml") if "[[camera]]" in p.read_text())
+    scenes = [p for p in every if not names or p.stem in names.split(",")]
+    if not scenes:
+        raise RuntimeError(f"GLOAM_BENCH_SCENES: none of {names}; there are: {', '.join(p.stem for p in every)}")
+    size = ["--spp", 32, "--seeds", 2] if quick else []
+    found = [run_json(BIN / "bench_few_samples", scene, "--json", *size) for scene in scenes]
+
+    def off(data, key):
+        return max(abs(ratio - 1) for ratio in data[key]["ratio"])
+
+    def note(data, key):
+        ratios = "/".join(f"{r:.3f}" for r in data[key]["ratio"])
+        own = f", {min(data[key]['kept'], key=lambda k: -abs(k - 1)):.3f} of its samples'" if "kept" in data[key] else ""
+        return f"{data['scene']} {ratios} ± {max(data[key]['error']):.3f}{own}"
+
+    for key, bar in (("path 4", 0.05), ("path 16", 0.05), ("fast", 0.2)):
+        worst = sorted(found, key=lambda data: -off(data, key))
+        yield at_most(f"{key}: mean light against many samples, worst channel and scene", off(worst[0], key), bar,
+                      "; ".join(note(data, key) for data in worst))
+    still = {data["scene"]: data["still"] for data in found if data["scene"] in ("house", "warehouse", "office")}
+    if still:
+        yield at_most("still scene at 16 samples: deviation over frames [1/255]", max(still.values()), 2,
+                      ", ".join(f"{name} {value:.2f}" for name, value in still.items()))
+
+
 def lidar_scene(name, model):
     """Go1, a floor, four walls and 20 boxes; a LiDAR of 64 x 1024 beams 1.2 m from the robot, which it faces."""
     folder = CACHE / "bench_lidar"
@@ -478,5 +506,5 @@ def python(quick):
 
 # With the seconds that each takes on two cores: the first estimate of the time left.
 ALL = {sim_step_rate: 15, sim_beside_cameras: 60, path_tier: 60, equal_error: 600, direct_tier: 90, direct_places: 60, view: 40, fast_tier: 400, truth: 40, load_time: 120, import_time: 60,
-       first_picture: 15, adaptive_sampling: 120, lidar: 25, environments: 60, hfield: 25, gas: 20,
+       first_picture: 15, adaptive_sampling: 120, truth_at_few_samples: 900, lidar: 25, environments: 60, hfield: 25, gas: 20,
        effects: 90, all_effects: 75, log_rate: 60, record_cost: 300, latency: 330, python: 60}

@@ -30,7 +30,7 @@ class Denoiser {
   /// Writes the film's radiance without its noise to `out` [cd/m²], (height x width). Uses albedo,
   /// normal, depth and variance where the film has them. Pixels that are not numbers count as
   /// black; the light of single pixels far brighter than everything around them (fireflies) is
-  /// spread first.
+  /// spread. The picture keeps the film's light.
   virtual Status denoise(const Film& film, std::vector<Vec3f>* out) = 0;
   virtual const char* name() const = 0;
 };
@@ -47,11 +47,18 @@ std::unique_ptr<Denoiser> make_edge_denoiser();
 /// Open Image Denoise if wanted and present, on the CPU where the card refuses, else our own.
 std::unique_ptr<Denoiser> make_denoiser(const DenoiseOptions& options);
 
-/// Steps that both do first: not-a-number to black, and pixels brighter than four times the third
+/// Step that both do first: not-a-number to black, and pixels brighter than four times the third
 /// brightest of their 5 x 5 neighbours down to that. Every thin line or highlight of three or more
 /// pixels passes unchanged. What fireflies lose is spread, as light on the albedo there, over the
-/// 33 x 33 pixels around that face the same way, so that the picture keeps its mean; a pixel gets
-/// at most 2 % of a firefly's limit of it.
-void remove_fireflies(const Film& film, std::vector<Vec3f>* out);
+/// 33 x 33 pixels around that face the same way; a pixel gets at most 2 % of a firefly's limit of
+/// it. `light`: the film's light as it is to be kept, where a firefly has at most three times that of
+/// all those pixels together: errors are not light.
+void remove_fireflies(const Film& film, std::vector<Vec3f>* out, std::vector<Vec3f>* light);
+
+/// Step that both do last: gives a denoised picture the light of `light`, per channel, in each
+/// neighbourhood of some 65 x 65 pixels and as a whole. What fireflies could not give away nearby
+/// and what a filter has lost brightens all that is seen there by one factor.
+void restore_light(const std::vector<Vec3f>& light, int width, int height,
+                   std::vector<Vec3f>* picture);
 
 }  // namespace gloam

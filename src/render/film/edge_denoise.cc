@@ -36,7 +36,7 @@ class EdgeDenoiser : public Denoiser {
   Status denoise(const Film& film, std::vector<Vec3f>* out) override {
     width_ = film.width;
     height_ = film.height;
-    remove_fireflies(film, &color_);
+    remove_fireflies(film, &color_, &light_before_);
     demodulate(film);
     gather_guides(film);
     estimate_variance(film);
@@ -53,6 +53,7 @@ class EdgeDenoiser : public Denoiser {
     out->resize(n);
     for (size_t i = 0; i < n; ++i) (*out)[i] = color_[i] * albedo_[i];
     mend_edges(out);
+    restore_light(light_before_, width_, height_, out);
     return {};
   }
 
@@ -255,7 +256,7 @@ class EdgeDenoiser : public Denoiser {
   }
 
   int width_ = 0, height_ = 0;
-  std::vector<Vec3f> color_, albedo_, filtered_;
+  std::vector<Vec3f> color_, albedo_, filtered_, light_before_;
   std::vector<float> variance_, filtered_variance_, light_, light_variance_, support_;
   std::vector<Vec3f> normal_;  // means over pixels, not of unit length; 0 where unknown
   std::vector<Guide> guides_;

@@ -12,6 +12,7 @@ constexpr float kRatio = 4;           // to the third brightest of the pixels ar
 constexpr int kRadius = 2;            // of those [px]
 constexpr int kSpread = 16;           // how far the light of a firefly is spread [px]
 constexpr float kMostSpread = 0.02f;  // fraction of a firefly's limit that one pixel may get of it
+constexpr float kMostKept = 3;        // light of a firefly, in that of all pixels around it
 constexpr float kFacing = 0.9f;       // cosine between surfaces that take each other's light
 
 /// Values that are infinite or no number are errors elsewhere, not light.
@@ -24,12 +25,13 @@ struct Firefly {
 
 class Fireflies {
  public:
-  Fireflies(const Film& film, std::vector<Vec3f>* out)
+  Fireflies(const Film& film, std::vector<Vec3f>* out, std::vector<Vec3f>* light)
       : width_(film.width),
         height_(film.height),
         albedo_(plane(film, film.albedo)),
         normal_(plane(film, film.normal)),
         out_(*out),
+        light_(*light),
         rows_(static_cast<size_t>(film.height)) {
     out_.resize(film.pixel_count());
     std::vector<float> brightness(film.pixel_count());
@@ -41,6 +43,7 @@ class Fireflies {
       }
     });
     brightness_ = std::move(brightness);
+    light_ = out_;
   }
 
   void find() {
@@ -101,12 +104,24 @@ class Fireflies {
     out_[i] *= limit / brightness_[i];
     const Vec3f a = albedo(i), excess = whole - out_[i];
     Firefly fly{x, y, {excess.x / a.x, excess.y / a.y, excess.z / a.z}};
+    light_[i] = out_[i] + excess * min(1, kMostKept * light_around(fly, limit) / luminance(excess));
     const float received = luminance(fly.light * reflected_around(fly));
     if (!(received > 0)) return;  // nothing around looks the same way
     const float fraction = luminance(excess) / received;
     const float most = kMostSpread * limit / luminance(fly.light);
     fly.light *= min(fraction, most);
     rows_[static_cast<size_t>(y)].push_back(fly);
+  }
+
+  /// Brightness of all pixels that the firefly's light may be spread over; of other fireflies what
+  /// would be no firefly here.
+  float light_around(const Firefly& fly, float limit) const {
+    float sum = 0;
+    const int last = std::min(height_ - 1, fly.y + kSpread);
+    for (int v = std::max(0, fly.y - kSpread); v <= last; ++v) {
+      for (int u = first_x(fly); u <= last_x(fly); ++u) sum += min(brightness_[index(u, v)], limit);
+    }
+    return sum;
   }
 
   /// Sum of the albedo of the pixels that the firefly's light is spread over.
@@ -125,16 +140,17 @@ class Fireflies {
   const int width_, height_;
   const std::span<const Vec3f> albedo_, normal_;
   std::vector<Vec3f>& out_;
+  std::vector<Vec3f>& light_;
   std::vector<float> brightness_;
   std::vector<std::vector<Firefly>> rows_;
 };
 
 }  // namespace
 
-void remove_fireflies(const Film& film, std::vector<Vec3f>* out) {
+void remove_fireflies(const Film& film, std::vector<Vec3f>* out, std::vector<Vec3f>* light) {
   GLOAM_CHECK(film.radiance.size() == film.pixel_count(),
               "a film without radiance cannot be denoised");
-  Fireflies fireflies(film, out);
+  Fireflies fireflies(film, out, light);
   fireflies.find();
   fireflies.spread();
 }

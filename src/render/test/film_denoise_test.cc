@@ -108,6 +108,74 @@ TEST_P(DenoiseTest, KeepsTheMeanLight) {
   EXPECT_NEAR(mean_luminance(out) / mean_luminance(scene.reference), 1, 0.03);
 }
 
+/// A wall lit from the right.
+TestScene make_wall(int width, int height) {
+  TestScene scene;
+  Film& f = scene.film;
+  f.width = width;
+  f.height = height;
+  f.albedo.assign(f.pixel_count(), {0.6f, 0.5f, 0.4f});
+  f.normal.assign(f.pixel_count(), {0, 0, 1});
+  f.depth.assign(f.pixel_count(), 3);
+  for (int i = 0; i < width * height; ++i) {
+    const float light = 50 + 100 * static_cast<float>(i % width) / static_cast<float>(width);
+    scene.reference.push_back(f.albedo[static_cast<size_t>(i)] * light);
+  }
+  f.radiance = scene.reference;
+  return scene;
+}
+
+// Light that comes by a rare path: four pixels of a hundred have two thirds of it.
+TEST_P(DenoiseTest, KeepsTheLightOfRarePaths) {
+  constexpr float kShare = 0.04f, kRare = 2.0f / 3;
+  const RandomStream random{3, stream_id("test.rare")};
+  double kept[3] = {}, found[3] = {};
+  for (uint64_t picture = 0; picture < 8; ++picture) {
+    TestScene scene = make_wall(96, 72);
+    for (size_t i = 0; i < scene.film.radiance.size(); ++i) {
+      const bool hit = random.uniform(picture, i) < static_cast<double>(kShare);
+      const Vec3f whole = scene.reference[i], rare{1, 0.8f, 0.5f};  // a fire's
+      scene.film.radiance[i] = whole * (1 - kRare);
+      if (hit) scene.film.radiance[i] += whole * rare * (kRare / kShare);
+    }
+    std::vector<Vec3f> out;
+    ASSERT_TRUE(denoiser_->denoise(scene.film, &out).ok());
+    for (size_t i = 0; i < out.size(); ++i) {
+      for (int c = 0; c < 3; ++c) {
+        kept[c] += static_cast<double>(out[i][c]);
+        found[c] += static_cast<double>(scene.film.radiance[i][c]);
+      }
+    }
+  }
+  for (int c = 0; c < 3; ++c) EXPECT_NEAR(kept[c] / found[c], 1, 0.01) << "channel " << c;
+}
+
+TEST_P(DenoiseTest, LeavesNoMoreNoiseAtTheBorderThanInside) {
+  const RandomStream random{6, stream_id("test.border")};
+  double outermost = 0, inside = 0;
+  for (uint64_t picture = 0; picture < 4; ++picture) {
+    TestScene scene = make_wall(160, 120);
+    for (size_t i = 0; i < scene.film.radiance.size(); ++i) {
+      const float e = -std::log(1 - static_cast<float>(random.uniform(picture, i)) * 0.999999f);
+      scene.film.radiance[i] *= 0.5f + 0.5f * e;
+    }
+    std::vector<Vec3f> out;
+    ASSERT_TRUE(denoiser_->denoise(scene.film, &out).ok());
+    const auto roughness = [&](int row) {  // mean of second differences along it
+      double sum = 0;
+      for (size_t x = 1; x + 1 < 160; ++x) {
+        const size_t i = static_cast<size_t>(row) * 160 + x;
+        const float bend = luminance(out[i - 1]) - 2 * luminance(out[i]) + luminance(out[i + 1]);
+        sum += static_cast<double>(std::fabs(bend / luminance(scene.reference[i])));
+      }
+      return sum;
+    };
+    outermost += roughness(0) + roughness(119);
+    inside += roughness(8) + roughness(111);
+  }
+  EXPECT_LT(outermost, 2.5 * inside);  // Open Image Denoise without a border: 5
+}
+
 TEST_P(DenoiseTest, KeepsEdgesOfShapeAndTexture) {
   const TestScene scene = make_scene(320, 240, 0.3f, 9);
   std::vector<Vec3f> out;
@@ -236,8 +304,8 @@ TEST(Denoise, FireflyFilterKeepsHighlightsOfThreePixels) {
   for (const size_t i :
        {size_t{4 * 16 + 9}, size_t{5 * 16 + 9}, size_t{6 * 16 + 9}, size_t{7 * 16 + 9}})
     film.radiance[i] = {50, 60, 70};
-  std::vector<Vec3f> out;
-  remove_fireflies(film, &out);
+  std::vector<Vec3f> out, light;
+  remove_fireflies(film, &out, &light);
   EXPECT_NEAR(out[8 * 16 + 3].x, 4, 0.3);
   EXPECT_NEAR(out[5 * 16 + 9].z, 70, 0.3);
   EXPECT_NEAR(out[0].x, 1, 0.3);
@@ -259,9 +327,10 @@ TEST(Denoise, SpreadsTheLightOfFirefliesOverSurfacesThatFaceTheirWay) {
   }
   const size_t fly = static_cast<size_t>(20 * n + 16);
   film.radiance[fly] = {105, 105, 105};  // 85 more than its limit
-  std::vector<Vec3f> out;
-  remove_fireflies(film, &out);
+  std::vector<Vec3f> out, light;
+  remove_fireflies(film, &out, &light);
   EXPECT_NEAR(mean_luminance(out) / mean_luminance(film.radiance), 1, 1e-4);
+  EXPECT_EQ(light[fly].x, 105);
   EXPECT_NEAR(out[fly].x, 20, 1);
   EXPECT_GT(out[fly + 5].x, 5.05f) << "the wall around gets the light";
   const size_t stripe = static_cast<size_t>(20 * n + 2);
@@ -269,6 +338,22 @@ TEST(Denoise, SpreadsTheLightOfFirefliesOverSurfacesThatFaceTheirWay) {
   const size_t below = static_cast<size_t>(33 * n + 16), far = static_cast<size_t>(20 * n + 60);
   EXPECT_EQ(out[below].x, film.radiance[below].x);
   EXPECT_EQ(out[far].x, film.radiance[far].x);
+}
+
+TEST(Denoise, RestoresLightWhereItWas) {
+  // Left half: half of the red is gone. Right half: all is there.
+  const int w = 400, h = 40;
+  std::vector<Vec3f> light(static_cast<size_t>(w * h), Vec3f{10, 10, 10}), picture = light;
+  for (size_t i = 0; i < picture.size(); ++i)
+    if (i % w < w / 2) picture[i].x = 5;
+  restore_light(light, w, h, &picture);
+  EXPECT_NEAR(mean_luminance(picture) / mean_luminance(light), 1, 1e-5);
+  EXPECT_NEAR(picture[20 * w + 20].x, 10, 0.2);
+  EXPECT_NEAR(picture[20 * w + 380].x, 10, 0.2);
+  EXPECT_NEAR(picture[20 * w + 20].y, 10, 1e-4);
+  std::vector<Vec3f> black(light.size());
+  restore_light(light, w, h, &black);
+  EXPECT_EQ(mean_luminance(black), 0) << "what is black stays black";
 }
 
 }  // namespace
