@@ -12,14 +12,13 @@ int mirrored(int i, int n) {
 }
 
 void add_mirrored(const std::vector<Vec3f>& plane, const Film& film, int border,
-            std::vector<Vec3f>* wide) {
+                  std::vector<Vec3f>* wide) {
   wide->clear();
   if (plane.size() != film.pixel_count()) return;
   wide->reserve(static_cast<size_t>(film.width + 2 * border) *
                 static_cast<size_t>(film.height + 2 * border));
   for (int y = -border; y < film.height + border; ++y) {
-    const Vec3f* row =
-        plane.data() + static_cast<ptrdiff_t>(mirrored(y, film.height)) * film.width;
+    const Vec3f* row = plane.data() + static_cast<ptrdiff_t>(mirrored(y, film.height)) * film.width;
     for (int x = -border; x < 0; ++x) wide->push_back(row[mirrored(x, film.width)]);
     wide->insert(wide->end(), row, row + film.width);
     for (int x = film.width; x < film.width + border; ++x)

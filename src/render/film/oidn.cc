@@ -227,8 +227,8 @@ class OidnDenoiser : public Denoiser {
   }
 
  private:
-  /// Width beyond which the network's padding no longer shows, measured: with 4 pixels the outermost
-  /// row of a noisy wall has 1.4 times the error of the inside, with 8 as much as inside.
+  /// Width beyond which the network's padding no longer shows, measured: with 4 pixels the
+  /// outermost row of a noisy wall has 1.4 times the error of the inside, with 8 as much as inside.
   static constexpr int kBorder = 8;
 
   /// The library takes normals only together with albedo.

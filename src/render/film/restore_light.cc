@@ -9,9 +9,9 @@ namespace {
 
 using WindowLight = Vec3Of<double>;
 
-constexpr int kReach = 32;            // of the windows that keep their light, to each side [px]
-constexpr double kMostWindowGain = 8;       // of one pixel and channel
-constexpr double kMostWholeGain = 2;  // of the picture, after that of its windows
+constexpr int kReach = 32;             // of the windows that keep their light, to each side [px]
+constexpr double kMostWindowGain = 8;  // of one pixel and channel
+constexpr double kMostWholeGain = 2;   // of the picture, after that of its windows
 
 /// Sums over `n` values `stride` apart, each over those up to kReach away. Running sums in double
 /// precision: lamps and the dark beside them are in one picture.
@@ -69,7 +69,8 @@ void restore_light(const std::vector<Vec3f>& light, int width, int height,
                    std::vector<Vec3f>* picture) {
   const std::vector<WindowLight> wanted = around(light, width, height);
   const std::vector<WindowLight> found = around(*picture, width, height);
-  for (size_t i = 0; i < wanted.size(); ++i) (*picture)[i] *= gain(wanted[i], found[i], kMostWindowGain);
+  for (size_t i = 0; i < wanted.size(); ++i)
+    (*picture)[i] *= gain(wanted[i], found[i], kMostWindowGain);
   const Vec3f rest = gain(total(light), total(*picture), kMostWholeGain);
   for (Vec3f& p : *picture) p *= rest;
 }
