@@ -219,10 +219,10 @@ void print(const std::string& name, const Found& found, bool json) {
       rows += '\n';
     }
   }
-  fmt::print(fmt::runtime(json ? "{{\"scene\": \"{}\", \"many\": [{}], \"error\": [{}]{}, \"still\": "
-                                 "{:.3f}}}\n"
-                               : "{}: {} cd/m² (± {})\n{}  still: {:.2f}/255\n"),
-             name, text_of(found.many.mean, json ? ", " : "/"),
+  const char* text = json ? "{{\"scene\": \"{}\", \"many\": [{}], \"error\": [{}]{}, "
+                            "\"still\": {:.3f}}}\n"
+                          : "{}: {} cd/m² (± {})\n{}  still: {:.2f}/255\n";
+  fmt::print(fmt::runtime(text), name, text_of(found.many.mean, json ? ", " : "/"),
              text_of(found.many.error, json ? ", " : "/"), rows, found.deviation);
   std::fflush(stdout);
 }
