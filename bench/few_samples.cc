@@ -187,7 +187,8 @@ Result<Found> measure(const Options& options, const Studio& studio, const std::s
   }
   std::vector<Color> fast;
   for (int i = 0; i < options.seeds; ++i) {
-    GLOAM_TRY(const auto frames, studio.take(studio.render(1, true, "fast"), static_cast<uint64_t>(1 + i), kFrames));
+    GLOAM_TRY(const auto frames, studio.take(studio.render(1, true, "fast"),
+                                             static_cast<uint64_t>(1 + i), kFrames));
     fast.push_back(mean_of(frames.back()));
     if (i == 0) GLOAM_TRY_STATUS(save(options, studio, name + "_fast", frames.back()));
   }

@@ -227,8 +227,8 @@ class OidnDenoiser : public Denoiser {
   }
 
  private:
-  /// Width beyond which the network's padding no longer shows. Roughness of a noisy wall's outermost
-  /// row over that of the eighth: 5.4 without, 1.5 with 4 pixels, 1.3 with 8 and with 16.
+  /// Width beyond which the network's padding no longer shows. Roughness of a noisy wall's
+  /// outermost row over that of the eighth: 5.4 without, 1.5 with 4 pixels, 1.3 with 8 and with 16.
   static constexpr int kBorder = 8;
 
   /// The library takes normals only together with albedo.
