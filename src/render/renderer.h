@@ -6,6 +6,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "gloam/result.h"
@@ -117,6 +118,11 @@ class Renderer {
   virtual void scan(const LidarView& view, std::span<LidarReturn> returns) = 0;
   /// For RenderSettings::history; of this renderer alone.
   virtual std::unique_ptr<ViewHistory> make_history() const = 0;
+  /// True at the first call alone: cameras that share a renderer warn once of its pictures' noise.
+  bool first_to_warn() { return !std::exchange(has_warned_, true); }
+
+ private:
+  bool has_warned_ = false;
 };
 
 /// "Embree 3.13.5"

@@ -6,12 +6,14 @@
 #include <cmath>
 
 #include "base/hash.h"
+#include "base/log.h"
 #include "base/text.h"
 #include "geometry/mesh/single.h"
 #include "render/film/tone_map.h"
 #include "render/kernel/camera/channels.h"
 #include "render/scene/pose.h"
 #include "sensors/camera/object_boxes.h"
+#include "sensors/camera/sample_noise.h"
 #include "sensors/timing.h"
 #include "sim/loop/step_schedule.h"
 #include "world/sensors/camera_rate.h"
@@ -176,6 +178,8 @@ Result<std::unique_ptr<CameraSensor>> CameraSensor::create(const RenderDescripti
     sensor->denoiser_ =
         make_denoiser({.device = on_card ? DenoiseDevice::kCuda : DenoiseDevice::kCpu});
     settings.guide_samples = 4;
+    settings.variance = settings.tier == RenderTier::kPath && settings.error <= 0 &&
+                        !description.volumes.empty();  // for warn_of_noise()
   }
   const bool details = channels.needs(ChannelSource::kDetails);
   const bool geometry = details || channels.needs(ChannelSource::kSurface);
@@ -194,6 +198,7 @@ PictureMemory CameraSensor::memory() const {
   uint64_t pixel = channels_.light() ? 36 : 0;
   if (settings_.exact_channels) pixel += settings_.exact_details ? sizeof(ExactChannels) : 12;
   if (settings_.error > 0) pixel += 4;
+  if (settings_.variance) pixel += sizeof(Vec3f);
   if (settings_.tier == RenderTier::kFast) pixel += 400;
   PictureMemory out;
   if (denoiser_ != nullptr) {
@@ -247,6 +252,7 @@ std::shared_ptr<const CameraFrame> CameraSensor::capture(Renderer& renderer,
     }
     stats_ = renderer.render(view, settings_, &film_);
     if (!stats_.finished) return nullptr;
+    warn_of_noise(renderer);
     accumulate();
     if (channels_.light() && !description_.weather.particles.empty()) {
       light = denoise();
@@ -267,6 +273,16 @@ void CameraSensor::begin_samples(const CameraView& view) {
   settings_.first_sample = goes_on ? settings_.first_sample + settings_.spp : 0;
   pictures_ = goes_on ? pictures_ + 1 : 1;
   accumulated_from_ = view.X_WC_open;
+}
+
+void CameraSensor::warn_of_noise(Renderer& renderer) {
+  if (!settings_.variance || pictures_ > 1) return;
+  const int needed = samples_needed(film_, settings_.spp);
+  if (needed <= settings_.spp || !renderer.first_to_warn()) return;
+  log_warning(
+      "camera '{}': {} samples per pixel are too few for the light in this smoke or dust: its "
+      "pictures change from one to the next; some {} would do (spp), or the fast tier",
+      camera().name, settings_.spp, needed);
 }
 
 void CameraSensor::accumulate() {

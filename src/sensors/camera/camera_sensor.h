@@ -97,6 +97,8 @@ class CameraSensor {
   std::vector<Vec3f>* denoise();
   Shutter shutter(std::span<const PoseFrame* const> keys) const;
   void begin_samples(const CameraView& view);
+  /// Tells, once in a run, that a denoiser cannot mend a picture of so few samples.
+  void warn_of_noise(Renderer& renderer);
   void accumulate();
   /// `light`: that of the finished picture; null = as denoise() gives it.
   void convert(const PoseFrame& now, int64_t frame_index, const CameraView& view,
