@@ -112,7 +112,11 @@ class StagedRenderer final : public Renderer {
     job.tracer = traced_.tracer();
     const PictureClip clip = clip_of(view, job.scene, job.camera);
     if (!clip.view.is_idle()) job.tracer.clip = &clip;
-    if (settings.tier != RenderTier::kDirect) {
+    const bool few = job.scene.lights.size <= kMaxWeighedLights;
+    if (settings.tier == RenderTier::kPath && few) job.scene.selects_by_tree = false;
+    // The fast tier's cache keeps the light of scenes with a tree by itself.
+    if (settings.tier == RenderTier::kPath ||
+        (settings.tier == RenderTier::kFast && !job.scene.selects_by_tree)) {
       if (!has_guide_) guide_.build(job.scene, traced_.static_tracer(), described_);
       has_guide_ = true;
       described_ = {};

@@ -264,8 +264,11 @@ struct FallenView {
   ShelterView shelter;
 };
 
-/// Scenes with more lights select by a tree.
-inline constexpr uint32_t kMaxWeighedLights = 16;
+/// Scenes with more lights have a tree over them, by which the direct and the fast tier select.
+inline constexpr uint32_t kMaxLightsWithoutTree = 16;
+/// Scenes with more lights select by it in the path tier, too: up to here lights are weighed one by
+/// one, with what the guide knows of each. A furnished house has some thirty.
+inline constexpr uint32_t kMaxWeighedLights = 48;
 
 struct SceneView {
   DeviceSpan<const InstanceView> instances;
@@ -283,7 +286,8 @@ struct SceneView {
   uint32_t light_level_count = 0;
   DeviceSpan<const ProfileView> profiles;
   DeviceSpan<const float> profile_values;
-  LightTreeView light_tree;  ///< of scenes with more than kMaxWeighedLights
+  LightTreeView light_tree;      ///< of scenes with more than kMaxLightsWithoutTree
+  bool selects_by_tree = false;  ///< lights are selected by it
   DeviceSpan<const MaterialLayers> layers;
   DeviceSpan<const ProceduralDescription> procedurals;
   const AlbedoTable* albedo = nullptr;
@@ -312,11 +316,11 @@ struct SceneView {
   GLOAM_HD bool has_flicker() const { return !kPlainScenes && light_levels.size > 0; }
   GLOAM_HD bool has_sky_texture() const { return !kPlainScenes && sky_texture >= 0; }
   GLOAM_HD bool lets_light_through() const { return !kPlainScenes && has_transparent; }
-  GLOAM_HD bool has_many_lights() const { return !kPlainScenes && lights.size > kMaxWeighedLights; }
+  GLOAM_HD bool has_many_lights() const { return !kPlainScenes && selects_by_tree; }
   GLOAM_HD bool guides_directions() const { return guide.probability > 0; }
   /// On the host alone: it reads the lights.
   bool is_plain() const {
-    bool lamps = lights.size <= kMaxWeighedLights;
+    bool lamps = lights.size <= kMaxLightsWithoutTree;
     for (uint32_t i = 0; lamps && i < lights.size; ++i) {
       const LightView& light = lights[i];
       lamps = light.kind != LightKind::kInstance && light.profile < 0;

@@ -300,7 +300,7 @@ void LightTable::update_tree(const std::vector<LightView>& before,
   has_visible_ = std::any_of(lights_.begin(), lights_.end(), [](const LightView& light) {
     return !light.is_delta && light.casts_shadow && light.kind != LightKind::kInstance;
   });
-  if (lights_.size() > kMaxWeighedLights) {
+  if (lights_.size() > kMaxLightsWithoutTree) {
     tree_.build(lights_, headlights_);
   } else {
     tree_ = {};
@@ -314,7 +314,6 @@ std::vector<LightView> LightTable::guided(const RenderDescription& description,
                                           std::vector<InstanceView>* instances) {
   std::vector<LightView> lights;
   for (const LightDescription& in : description.lights) {
-    if (lights.size() > kMaxWeighedLights) return lights;  // too many for a guide
     if (!is_guided(in)) continue;
     lights.push_back(describe_light(in));
     place(description, in, frame, &lights.back());
@@ -325,7 +324,6 @@ std::vector<LightView> LightTable::guided(const RenderDescription& description,
     instance.material = static_cast<uint32_t>(description.instances[i].material);
     instance.light = -1;
     if (!is_guided(description, description.instances[i])) continue;
-    if (lights.size() > kMaxWeighedLights) return lights;
     instance.light = static_cast<int>(lights.size());
     lights.push_back(emitter_of(*instances, i, materials, meshes).value_or(LightView{}));
   }

@@ -24,9 +24,8 @@ class LightTable {
   void place_headlights(const Affine3f& X_WC, std::span<const Affine3f> keys);
 
   /// Static lights that cast shadows, whether on or off, and static things described as emitters,
-  /// in the order of LightView::guide; of more than kMaxWeighedLights, for which there is no guide,
-  /// one more than that. `materials` and `meshes` as described; `instances` get the materials and
-  /// lights that they are described with.
+  /// in the order of LightView::guide. `materials` and `meshes` as described; `instances` get the
+  /// materials and lights that they are described with.
   static std::vector<LightView> guided(const RenderDescription& description, const PoseFrame& frame,
                                        const std::vector<MaterialView>& materials,
                                        const std::vector<MeshView>& meshes,

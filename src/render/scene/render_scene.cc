@@ -319,6 +319,7 @@ SceneView RenderScene::view_from(const Affine3f& X_WC, std::span<const Affine3f>
     view.fallen = {weather.wetness_at(time_), weather.snow_at(time_), static_cast<float>(time_),
                    weather.impacts, weather.shelter->view()};
   view.light_tree = lights_.tree();
+  view.selects_by_tree = !view.light_tree.nodes.empty();
   view.procedurals = span_of(description_.procedurals);
   view.layers = span_of(materials_.layers());
   view.albedo = &albedo_;

@@ -93,6 +93,7 @@ class ArrivingLight {
   /// Sends a ray from the row through each of the map's cells in `which` (kProbes).
   void probe(int row, uint32_t round, const uint32_t* which, Arrival* arrivals) const {
     const GuideRow& from = rows_[static_cast<size_t>(row)];
+    Vec3f origins[kProbes];
     Surface met[kProbes];
     LightSample lights[kProbes];
     const Probes probes(scene_, statics_);
@@ -102,13 +103,17 @@ class ArrivingLight {
           Sampler sampler = guide_sampler(row, i, 2 + 2 * round);
           const int start = static_cast<int>(sampler.next_1d() * 4096.0f);
           const SurfacePoint at = start_of(grid_, from, start, &sampler);
-          ray->o = at.p;
+          ray->o = origins[i] = at.p;
           ray->d = direction_in(which[i], sampler.next_2d());
           const float cosine = from.facing < 0 ? 1.0f : max(dot(ray->d, at.n), 0.0f);
           arrivals[i].weight = cosine / directions::area_per_solid_angle(ray->d);
           return cosine > 0;
         },
         [&](int i, const Ray& ray, bool found, const RayHit& hit) {
+          Ray way = ray;
+          way.o = origins[i];
+          way.tmax = found ? dot(ray.o - way.o, ray.d) + hit.t : 1e30f;
+          arrivals[i].weight *= clearness(scene_.media, way, row, i);
           if (!found) {
             arrivals[i].light =
                 luminance(sky_radiance(scene_, ray.d, kConeSpread) + scene_.sky_ambient);
@@ -132,10 +137,14 @@ class ArrivingLight {
           aim_shadow_ray(met[i].p, met[i].geometric, met[i].t, light, ray);
           return true;
         },
-        [&](int i, const Ray&) {
+        [&](int i, const Ray& ray) {
           const float cosine = dot(lights[i].wi, met[i].geometric);
-          arrivals[i].light +=
-              arrivals[i].albedo * kInvPi * cosine * luminance(lights[i].radiance) / lights[i].pdf;
+          Ray way = ray;
+          way.o = met[i].p;
+          way.tmax = lights[i].distance;
+          arrivals[i].light += arrivals[i].albedo * kInvPi * cosine *
+                               luminance(lights[i].radiance) / lights[i].pdf *
+                               clearness(scene_.media, way, row, i);
         });
   }
 

@@ -6,6 +6,7 @@
 #include "render/cpu/tracer/embree_scene.h"
 #include "render/kernel/light/light_sampler.h"
 #include "render/kernel/math/sampler.h"
+#include "render/kernel/media/medium.h"
 
 namespace gloam {
 
@@ -40,6 +41,13 @@ int neighborhood(const LightGuide& grid, const std::vector<GuideRow>& rows, int 
 
 /// Draws for ray `ray` of the row `row`; `purpose` keeps those for different ends apart.
 Sampler guide_sampler(int row, int ray, uint32_t purpose);
+
+/// Luminance that media let through along the ray, up to its end.
+inline float clearness(const MediaView& media, const Ray& ray, int row, int i) {
+  if (media.volumes.empty()) return 1;
+  Sampler sampler = guide_sampler(row, i, 6);
+  return luminance(transmittance(media, ray, ray.tmax, {}, WalkRandom(sampler.next_2d())));
+}
 
 inline Vec3f next_3d(Sampler* sampler) {
   const Vec2f a = sampler->next_2d();

@@ -7,18 +7,30 @@
 #include "render/cpu/guide/guide_probes.h"
 #include "render/kernel/light/light_directions.h"
 #include "render/kernel/light/light_sampler.h"
+#include "render/scene/light_tree_table.h"
+#include "render/scene/span_of.h"
 
 namespace gloam {
 namespace {
 
 constexpr int kCellsAlong = 16;   // of the longest edge
-constexpr int kLightRays = 32;    // to each light from a cell
+constexpr int kLightRays = 32;    // to each light from a cell, at most
+constexpr int kRaysOfRow = 512;   // to all of them
 constexpr float kFloor = 0.002f;  // gain of a light that no ray has seen
 constexpr float kWorth = 0.02f;   // fraction of the map below which nothing is sampled from it
 constexpr float kEven = 0.5f;     // unevenness up to which the BSDF finds light as well
 constexpr float kGuidedProbability =
     0.75f;  // of directions by the guide, where surfaces are diffuse
 constexpr int kFacings = LightGuide::kFacings;
+
+/// Those that are the same in every picture.
+std::vector<VolumeView> still_volumes(const MediaView& media) {
+  std::vector<VolumeView> still;
+  for (uint32_t i = 0; i < media.volumes.size; ++i) {
+    if (!media.volumes[i].changes) still.push_back(media.volumes[i]);
+  }
+  return still;
+}
 
 }  // namespace
 
@@ -46,15 +58,17 @@ void LightGuideStore::find_rows(const SceneView& scene, const CpuTracer& statics
 /// least noise.
 void LightGuideStore::look_for_lights(const SceneView& scene, const CpuTracer& statics, int row) {
   const GuideRow& from = rows_[static_cast<size_t>(row)];
+  const int rays = clamp(kRaysOfRow / max(static_cast<int>(grid_.lights), 1), 1, kLightRays);
   for (uint32_t light = 0; light < grid_.lights; ++light) {
     float brought[kLightRays], expected = 0, found = 0;  // the latter two: sums of squares
+    Vec3f origins[kLightRays];
     Probes(scene, statics)
         .trace(
-            kLightRays,
+            rays,
             [&](int i, Ray* ray) {
               Sampler sampler = guide_sampler(row, i, 0);
               const SurfacePoint start = start_of(grid_, from, i, &sampler);
-              ray->o = start.p;
+              ray->o = origins[i] = start.p;
               expected += sqr(light_weight<float>(scene, scene.lights[light], start.p, start.n));
               const LightSample sample =
                   sample_one_light(scene, light, ray->o, sampler.next_2d(), 0.0f);
@@ -66,7 +80,12 @@ void LightGuideStore::look_for_lights(const SceneView& scene, const CpuTracer& s
               ray->tmax = length(to) * 0.9999f;
               return true;
             },
-            [&](int i, const Ray&) { found += sqr(brought[i]); });
+            [&](int i, const Ray& ray) {
+              Ray way = ray;
+              way.o = origins[i];
+              way.tmax = dot(ray.o - way.o, ray.d) + ray.tmax;
+              found += sqr(brought[i] * clearness(scene.media, way, row, i));
+            });
     found_[static_cast<size_t>(row) * grid_.lights + light] =
         expected > 0 ? std::sqrt(found / expected) : 0.0f;
   }
@@ -75,6 +94,7 @@ void LightGuideStore::look_for_lights(const SceneView& scene, const CpuTracer& s
 void LightGuideStore::look_for_sky(const SceneView& scene, const CpuTracer& statics, int row) {
   const GuideRow& from = rows_[static_cast<size_t>(row)];
   const LightGuide guide = view();
+  Vec3f origins[kLightRays];
   float seen = 0;
   Probes(scene, statics)
       .trace(
@@ -82,14 +102,16 @@ void LightGuideStore::look_for_sky(const SceneView& scene, const CpuTracer& stat
           [&](int i, Ray* ray) {
             Sampler sampler = guide_sampler(row, i, 0);
             const SurfacePoint start = start_of(grid_, from, i, &sampler);
-            ray->o = start.p;
+            ray->o = origins[i] = start.p;
             ray->d = environment_sample(scene.environment, sampler.next_2d()).wi;
             return from.facing < 0 || dot(ray->d, start.n) > 0;
           },
-          [&](int, const Ray& ray) {
+          [&](int i, Ray ray) {
             const float by_map = environment_pdf(scene.environment, ray.d);
             const float by_guide = directions::pdf<float>(guide, static_cast<uint32_t>(row), ray.d);
-            if (by_map > 0) seen += by_map / (by_map + by_guide);
+            ray.o = origins[i];
+            if (by_map > 0)
+              seen += by_map / (by_map + by_guide) * clearness(scene.media, ray, row, i);
           });
   sky_seen_[static_cast<size_t>(row)] = seen / kLightRays;
 }
@@ -123,13 +145,20 @@ void LightGuideStore::build(SceneView scene, const CpuTracer& statics, const Des
                   [](const LightView& light) { return light.kind == LightKind::kDirectional; });
   const bool has_choice = has_sky || has_sun || look.lights.size() > 1;
   const bool has_walls = statics.rows.size > statics.first_still;
-  if (!has_walls || look.lights.size() > kMaxWeighedLights || !has_choice) return;
+  if (!has_walls || !has_choice) return;
   grid_ = place_guide_grid(
       scene, {statics.rows.data + statics.first_still, statics.rows.size - statics.first_still},
       kCellsAlong);
   if (grid_.nx == 0) return;
-  grid_.lights = static_cast<uint32_t>(look.lights.size());
-  scene.lights = {look.lights.data(), grid_.lights};
+  scene.lights = {look.lights.data(), static_cast<uint32_t>(look.lights.size())};
+  scene.selects_by_tree = scene.lights.size > kMaxWeighedLights;
+  if (!scene.selects_by_tree) grid_.lights = scene.lights.size;
+  LightTreeTable tree;
+  if (scene.selects_by_tree) tree.build(look.lights, {});
+  scene.light_tree = tree.view();
+  const std::vector<VolumeView> still = still_volumes(scene.media);
+  scene.media.volumes = span_of(still);
+  scene.media.glows = {};
   scene.materials = {look.materials.data(), static_cast<uint32_t>(look.materials.size())};
   scene.instances = {look.instances.data(), static_cast<uint32_t>(look.instances.size())};
   find_rows(scene, statics);

@@ -93,23 +93,24 @@ class LightSamplerOf {
     for (uint32_t i = 0; weighs && i < count_; ++i) {
       const LightView& light = scene.lights[i];
       weight[i] = light_weight(scene, light, p, n, both_sides);
-      if (light.guide >= 0 && any(rows.guided)) {
+      if (light.guide >= 0 && scene.guide.lights > 0 && any(rows.guided)) {
         const F gain =
             gather(scene.guide.gain.data + light.guide, rows.row * Uint(scene.guide.lights));
         weight[i] *= select(rows.guided, gain, F(1.0f));
       }
       total += weight[i];
     }
-    F sky = 0.0f;
+    F sky = 0.0f, visible = 1.0f;
     if (scene.has_environment() && !scene.environment.row_cdf.empty()) {
       sky = 0.25f * scene.environment.illuminance;  // of even light from all around
       if (any(rows.guided)) {
         // Directions through windows are the guide's: it knows them better than the whole map.
-        const F visible = gather(scene.guide.sky_visible.data, rows.row);
-        sky = select(rows.guided, sky * visible * visible, sky);
+        visible = select(rows.guided, gather(scene.guide.sky_visible.data, rows.row), F(1.0f));
+        sky *= weighs ? visible * visible : visible;
       }
     }
-    total = weighs ? total + sky : 2.0f * sky;  // lights that are not weighed get half
+    // Lights that are not weighed get half, and what the sky loses behind walls.
+    total = weighs ? total + sky : F(0.5f * scene.environment.illuminance);
     const F inverse = select(total > 0.0f, 1.0f / total, F(0.0f));
     for (uint32_t i = 0; weighs && i < count_; ++i) {
       // Written above for all of them. NOLINTNEXTLINE(clang-analyzer-core.CallAndMessage)
@@ -121,12 +122,14 @@ class LightSamplerOf {
   }
 
   /// Adds, after prepare(), media that glow to the choice; `beside_many`: their probability where
-  /// lights are not weighed.
+  /// lights are not weighed, and at most beside more than kMaxLightsWithoutTree.
   GLOAM_HD void add_glow(const SceneView& scene, Mask active, float beside_many = 0.5f) {
     each_lane(active, [&](int i) {
       const float glow = glow::weight(scene.media.glows, lane(p_, i), lane(n_, i));
       const float total = lane(total_, i);
-      const float probability = total < 0 ? beside_many : glow / (glow + total);
+      float probability = total < 0 ? beside_many : glow / (glow + total);
+      // Walls hide a fire, too: in other rooms of a house its lamps need their samples.
+      if (scene.lights.size > kMaxLightsWithoutTree) probability = min(probability, beside_many);
       set_lane(&glow_probability_, i, glow > 0 ? probability : 0.0f);
     });
     const F rest = select(active, 1.0f - glow_probability_, F(1.0f));

@@ -86,10 +86,10 @@ class PathMachine {
                         const paths::SegmentEndOf<float>& at) {
     paths::NextEventOf<float> event;
     if (at.medium_vertex.scattered) {
-      float band;
-      event = paths::sample_light_in_media(scene, &path_, at.medium_vertex, true, &band);
+      paths::MediumScatterOf<float> how;
+      event = paths::sample_light_in_media(scene, &path_, at.medium_vertex, true, &how);
       continues_ =
-          paths::sample_phase_direction(scene, options, &path_, at.medium_vertex, band, true);
+          paths::sample_phase_direction(scene, options, &path_, at.medium_vertex, how, true);
     } else {
       paths::ScatterOf<float> how;
       event = paths::sample_light(scene, &path_, at.v, true, &how);

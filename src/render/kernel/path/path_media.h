@@ -1,6 +1,7 @@
 #pragma once
 // The path stage in participating media. Device-safe.
 
+#include "render/kernel/light/light_directions.h"
 #include "render/kernel/path/path_state.h"
 
 namespace gloam::paths {
@@ -56,16 +57,29 @@ GLOAM_HD Vec3Of<F> eval_phases(const SceneView& scene, const State<F>& path,
   return value;
 }
 
-/// Samples one light at the vertices of the `active` lanes. `band`: the random number for the
-/// choice of a band.
+/// Fraction of LightGuide::probability in media: what scatters forwards finds some light by itself.
+inline constexpr float kGuidedInMedia = 0.67f;
+
+/// How directions are sampled at vertices in media.
+template <class F>
+struct MediumScatterOf {
+  F band{};  ///< random number for the choice of the guide, or of a band
+  GuideRowsOf<F> rows;
+  F guided{};  ///< probability of sampling the guide
+};
+
+/// Samples one light at the vertices of the `active` lanes.
 template <class F>
 GLOAM_HD NextEventOf<F> sample_light_in_media(const SceneView& scene, State<F>* path,
                                               const MediumVertexOf<F>& v, MaskOf<F> active,
-                                              F* band) {
+                                              MediumScatterOf<F>* at) {
   const Vec3Of<F> p = path->ray.o + path->ray.d * v.t;
-  path->light_sampler.prepare(scene, p, Vec3Of<F>{}, active);
+  at->rows = path->light_sampler.prepare(scene, p, Vec3Of<F>{}, active);
   if (scene.has_glow()) path->light_sampler.add_glow(scene, active);
-  *band = path->sampler.next_1d(active);
+  if (scene.guides_directions()) {
+    at->guided = select(at->rows.guided, F(kGuidedInMedia * scene.guide.probability), F(0.0f));
+  }
+  at->band = path->sampler.next_1d(active);
   const Vec2Of<F> u = path->sampler.next_2d(active);
   const LightSampleOf<F> light = path->light_sampler.sample(scene, p, u, path->ray.time, active);
   NextEventOf<F> event;
@@ -73,6 +87,9 @@ GLOAM_HD NextEventOf<F> sample_light_in_media(const SceneView& scene, State<F>* 
   if (!any(event.lit)) return event;
   F pdf = 1.0f;
   const Vec3Of<F> f = eval_phases(scene, *path, v, light.wi, event.lit, &pdf);
+  if (scene.guides_directions() && any(at->guided > 0.0f)) {
+    pdf = lerp(pdf, directions::pdf(scene.guide, at->rows.row, light.wi), at->guided);
+  }
   const F weight = select(light.is_delta, F(1.0f), mis_weight(light.pdf, pdf));
   event.casts_shadow = light.casts_shadow;
   event.shadow = path->ray;
@@ -85,21 +102,40 @@ GLOAM_HD NextEventOf<F> sample_light_in_media(const SceneView& scene, State<F>* 
 /// on.
 template <class F>
 GLOAM_HD MaskOf<F> sample_phase_direction(const SceneView& scene, const PathOptions& options,
-                                          State<F>* path, const MediumVertexOf<F>& v, F band,
-                                          MaskOf<F> active) {
+                                          State<F>* path, const MediumVertexOf<F>& v,
+                                          const MediumScatterOf<F>& at, MaskOf<F> active) {
   const Vec3Of<F> p = path->ray.o + path->ray.d * v.t;
   const MaskOf<F> next = can_continue(scene, options, *path, active);
   const Vec2Of<F> u = path->sampler.next_2d(next);
   Vec3Of<F> wi, weight;
-  F pdf = 1.0f;
+  F pdf = 1.0f, band = at.band;
+  MaskOf<F> by_guide = false;
+  const bool guides = scene.guides_directions() && any(at.guided > 0.0f);
+  if (guides) {
+    by_guide = next & (at.band < at.guided);
+    wi = directions::sample(scene.guide, at.rows.row, u);
+    band = clamp((at.band - at.guided) / (1.0f - at.guided), 0.0f, 0.99999994f);
+  }
   each_lane(next, [&](int i) {
-    const PhaseSample s =
-        sample_phase(scene.media.volumes[lane(v.volume, i)], {}, lane(path->throughput, i),
-                     lane(path->ray.d, i), lane(band, i), lane(u, i));
+    const VolumeView& volume = scene.media.volumes[lane(v.volume, i)];
+    const Vec3f throughput = lane(path->throughput, i), d = lane(path->ray.d, i);
+    PhaseSample s;
+    if (lane(by_guide, i)) {
+      s.wi = lane(wi, i);
+      const Vec3f phase = eval_phase(volume, {}, throughput, dot(d, s.wi), &s.pdf);
+      s.weight = phase / s.pdf;
+    } else {
+      s = sample_phase(volume, {}, throughput, d, lane(band, i), lane(u, i));
+    }
     set_lane(&wi, i, s.wi);
     set_lane(&weight, i, s.weight);
     set_lane(&pdf, i, s.pdf);
   });
+  if (guides) {
+    const F mixed = lerp(pdf, directions::pdf(scene.guide, at.rows.row, wi), at.guided);
+    weight *= pdf / mixed;
+    pdf = mixed;
+  }
   spawn_ray(next, p, p, wi, weight, pdf, path);
   return next;
 }
@@ -110,14 +146,14 @@ template <class F, class Tracer>
 GLOAM_HD MaskOf<F> scatter_in_media(const SceneView& scene, const Tracer& tracer,
                                     const PathOptions& options, State<F>* path,
                                     const MediumVertexOf<F>& v, MaskOf<F> active) {
-  F band{};
-  const NextEventOf<F> event = sample_light_in_media(scene, path, v, active, &band);
+  MediumScatterOf<F> at;
+  const NextEventOf<F> event = sample_light_in_media(scene, path, v, active, &at);
   if (any(event.lit)) {
     const Vec3Of<F> arriving = trace_shadow(scene, tracer, event.shadow, event.casts_shadow,
                                             event.lit, event.arriving, path);
     path->result.radiance += select<F>(event.lit, arriving, Vec3Of<F>{});
   }
-  return sample_phase_direction(scene, options, path, v, band, active);
+  return sample_phase_direction(scene, options, path, v, at, active);
 }
 
 }  // namespace gloam::paths

@@ -8,9 +8,8 @@ namespace gloam::realtime {
 
 // Lights at a surface.
 
-/// Lights of a scene, at most, that are all sampled at every surface; 1 to kMaxWeighedLights, which
-/// is as many as one weighs without a tree.
-inline constexpr uint32_t kMaxFastLights = kMaxWeighedLights;
+/// Lights of a scene, at most, that are all sampled at every surface; 1 to kMaxLightsWithoutTree.
+inline constexpr uint32_t kMaxFastLights = kMaxLightsWithoutTree;
 /// Samples of lights at a surface in view where there are more of them; 1 to 16. Each costs a
 /// shadow ray, and the filter takes out the noise of four.
 inline constexpr uint32_t kSampledLights = 4;
