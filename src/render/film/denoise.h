@@ -51,7 +51,7 @@ std::unique_ptr<Denoiser> make_denoiser(const DenoiseOptions& options);
 /// brightest of their 5 x 5 neighbours down to that. Every thin line or highlight of three or more
 /// pixels passes unchanged. What fireflies lose is spread, as light on the albedo there, over the
 /// 33 x 33 pixels around that face the same way; a pixel gets at most 2 % of a firefly's limit of
-/// it. `light`: the film's light as it is to be kept, where a firefly has at most three times that
+/// it. `light`: the film's light as it is to be kept, where a firefly has at most ten times that
 /// of all those pixels together: errors are not light.
 void remove_fireflies(const Film& film, std::vector<Vec3f>* out, std::vector<Vec3f>* light);
 

@@ -239,8 +239,7 @@ std::shared_ptr<const CameraFrame> CameraSensor::capture(Renderer& renderer,
     view.X_WC_previous = previous_free_pose_;
     previous_free_pose_ = free_pose_;
   }
-  // An event camera sees changes: with the same draws in every picture, what stands still has none.
-  settings_.frame = sensing().events ? 0 : static_cast<uint32_t>(frame_index);
+  settings_.frame = draws(view, frame_index);
   begin_samples(view);
   std::vector<Vec3f>* light = nullptr;
   {
@@ -262,6 +261,13 @@ std::shared_ptr<const CameraFrame> CameraSensor::capture(Renderer& renderer,
   auto frame = std::make_shared<CameraFrame>();
   convert(now, frame_index, view, light, frame.get());
   return frame;
+}
+
+uint32_t CameraSensor::draws(const CameraView& view, int64_t frame_index) const {
+  if (sensing().events) return 0;
+  if (denoiser_ == nullptr || settings_.tier == RenderTier::kFast)
+    return static_cast<uint32_t>(frame_index);
+  return static_cast<uint32_t>(hash_bytes(&view.X_WC_open, sizeof(view.X_WC_open)));
 }
 
 void CameraSensor::begin_samples(const CameraView& view) {

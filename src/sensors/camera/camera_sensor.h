@@ -96,6 +96,11 @@ class CameraSensor {
   /// The film's light, denoised where it is to be.
   std::vector<Vec3f>* denoise();
   Shutter shutter(std::span<const PoseFrame* const> keys) const;
+  /// Which random numbers a picture is made of. A denoised one has the same as the one before while
+  /// the camera stands still, so that what rests in it does not swim, and others where it has
+  /// moved, so that no pattern moves along with it. An event camera sees changes: it has the same
+  /// always. Pictures that keep their noise have their own, so that their mean converges.
+  uint32_t draws(const CameraView& view, int64_t frame_index) const;
   void begin_samples(const CameraView& view);
   /// Tells, once in a run, that a denoiser cannot mend a picture of so few samples.
   void warn_of_noise(Renderer& renderer);

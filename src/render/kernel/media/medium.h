@@ -48,9 +48,8 @@ GLOAM_HD Vec3f exp_of(Vec3f x) { return {expf(x.x), expf(x.y), expf(x.z)}; }
 GLOAM_HD float collision_density(const CellWalk& cell, Bands bands) {
   constexpr float kPerVoxel = 0.75f;
   const VolumeView& v = cell.volume();
-  if (v.temperature.empty() || !(cell.high() > 0) || !glows(v, cell.hottest(), bands)) {
-    return cell.high();
-  }
+  const bool is_even = v.temperature.empty() && cell.low() == cell.high();
+  if (is_even || !(cell.high() > 0) || !glows(v, cell.hottest(), bands)) return cell.high();
   const Vec3f k = bands.of(v.mass_extinction);
   const float rate = (k.x + k.y + k.z) * (1.0f / 3) * min(v.voxel.x, min(v.voxel.y, v.voxel.z));
   return rate > 0 ? max(cell.high(), kPerVoxel / rate) : cell.high();

@@ -57,8 +57,10 @@ GLOAM_HD Vec3Of<F> eval_phases(const SceneView& scene, const State<F>& path,
   return value;
 }
 
-/// Fraction of LightGuide::probability in media: what scatters forwards finds some light by itself.
-inline constexpr float kGuidedInMedia = 0.67f;
+/// Fraction of LightGuide::probability at a path's first vertex, if that is in a medium. Later ones
+/// follow the phase function alone: of a guide each of many scatterings may double a path's weight,
+/// and a few paths then hold a picture's light.
+inline constexpr float kGuidedInMedia = 0.3f;
 
 /// How directions are sampled at vertices in media.
 template <class F>
@@ -77,7 +79,8 @@ GLOAM_HD NextEventOf<F> sample_light_in_media(const SceneView& scene, State<F>* 
   at->rows = path->light_sampler.prepare(scene, p, Vec3Of<F>{}, active);
   if (scene.has_glow()) path->light_sampler.add_glow(scene, active);
   if (scene.guides_directions()) {
-    at->guided = select(at->rows.guided, F(kGuidedInMedia * scene.guide.probability), F(0.0f));
+    at->guided = select(at->rows.guided & (path->depth == 1u),
+                        F(kGuidedInMedia * scene.guide.probability), F(0.0f));
   }
   at->band = path->sampler.next_1d(active);
   const Vec2Of<F> u = path->sampler.next_2d(active);
