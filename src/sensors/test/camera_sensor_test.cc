@@ -97,6 +97,27 @@ class CameraSensorTest : public ::testing::Test {
   std::mutex mutex_;
 };
 
+// What rests must not swim, and no pattern may move along with a camera.
+TEST_F(CameraSensorTest, DenoisedPicturesHaveTheSameDrawsWhileTheCameraStands) {
+  const PoseFrame now = poses_at(0);
+  CameraRequest request = ask("plain", {"radiance"});
+  const auto raw = make(request);
+  EXPECT_NE(capture(*raw, now, now, 0)->radiance, capture(*raw, now, now, 1)->radiance)
+      << "noise that stays is drawn anew: its mean converges";
+  request.render.denoise = true;
+  const auto clean = make(request);
+  const auto first = capture(*clean, now, now, 0);
+  EXPECT_EQ(first->radiance, capture(*clean, now, now, 1)->radiance);
+
+  request.camera = "free";
+  const auto free = make(request);
+  const Quat towards_y = {std::sqrt(0.5), std::sqrt(0.5), 0, 0};
+  free->set_free_pose({{0, 1, 0}, towards_y});
+  const auto here = capture(*free, now, now, 0);
+  free->set_free_pose({{1e-5, 1, 0}, towards_y});
+  EXPECT_NE(here->radiance, capture(*free, now, now, 1)->radiance);
+}
+
 TEST_F(CameraSensorTest, ExactChannelsAreThoseOfTheRoom) {
   auto sensor = make(ask("plain", {"depth", "segmentation", "normal"}));
   const PoseFrame now = poses_at(0);
