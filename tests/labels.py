@@ -3,8 +3,6 @@
 SLOW       takes seconds or needs the machine for itself: not in `fast`, in CI two programs at a time
 FULL       slow and rarely fails, and others nearby promise much the same: in `full` alone
 SWEEPS     hundreds of seeds: disabled unless asked for, in `full`
-UNSANITIZED  speed, memory, means of many samples or seeds: not under sanitizers in CI, in `full` they are
-THREADS    of sim: several threads meet: these alone under TSan in CI, in `full` all are
 """
 SLOW = [
     "CheckModel.StockIsAskedForAsLongAsIsSaid",
@@ -58,22 +56,6 @@ FULL = [
     "ThirdParty.EveryFileThatStockLoadsRoundTrips",
 ]
 SWEEPS = ["*.DISABLED_Sweep*"]
-UNSANITIZED = [
-    "*Allocat*", "AtmosphereReference.*", "PropsPhysics.*", "GasBudget.*", "FastMedia.*",
-    "Adaptive.EndsWhenItsUserSaysSo", "Adaptive.ReachesWhatIsAskedFor", "Atmosphere.*",
-    "Bvh.AMillionRays*", "*CameraLensTest.KnownPoints*", "ConvertRoom.OfAScanIsFewSlabs",
-    "Fast.ARareBrightRayMakesNoSpot", "Fast.ARoomIsDarkSoon*",
-    "Fast.IndirectLightIsThatOfThePathTier", "Fast.LampsInMirrorsLightTheRoom", "Fast.PicturesAreTheSameForAnyNumberOfThreads",
-    "Fog.White*", "GasFire.*", "GasFlow.*", "GasWalls.*", "GeneratedEnvironment.OfOneSeedIsOneHash*",
-    "Glow.BringsTheLight*", "Glow.FillsAClosedWhiteRoom*", "Guide.IsTheSameWhatever*", "HeightErrorOf.APlane*",
-    "LightSchedule.TubesFlashThenStayOn",
-    "ManyLights.ThePictureIsTheSumOfThoseOfEachLight", "MovingSky.TheFastTier*", "MovingSky.TheGround*",
-    "Path.WhiteFurnaceReturnsAllLight", "Randomize.TheNumbersHaveTheDistribution", "Sky.SamplingAMap*", "TrotWalk.NoFallsInTwentySeedsOfPushes",
-]
-THREADS = [
-    "*Thread*", "BoundedQueue.*", "CommandTest.*", "Determinism.*", "Divergence.*", "Effects.*", "EffectsStep.*", "Instant.*", "Pace.*",
-    "PoseSolver.*", "Recompile.*", "StateReader.*", "Subscription.*",
-]
 
 
 def only(*lists, but=()):

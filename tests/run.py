@@ -2,8 +2,8 @@
 """Runs Gloam's tests: `./gloam test [fast|full] [--only NAME]`.
 
 fast  what takes about six minutes once built
-      (no tier) what CI runs: format, lint of changed files, all tests; if it changed, ASan+UBSan over the unit tests of what reads files,
-      TSan over base and sim, where threads meet; all else under sanitizers is in full, which also makes and tries the bundle
+      (no tier) what CI runs: format, lint of changed files, all tests, and a quarter of a minute of fuzzing with sanitizers for each of the
+      readers that everything goes through; all else under sanitizers is in full, which also makes and tries the bundle
 full  the same plus lint of every file, every sanitizer over everything, 10 000 damaged files for every reader, five minutes of
       fuzzing per target and sweeps over 200 seeds: an hour or more, but resumable: parts that passed are kept in build/full_state.json until the source changes
 """
@@ -28,7 +28,6 @@ import labels  # noqa: E402
 
 BUILD = ROOT / "build"
 CLANG = "-19"
-READERS = {"base", "trajectory", "ros", "mcap", "geometry", "scene", "world"}  # of strangers' files: under sanitizers in every CI
 UNIT = ["base", "trajectory", "ros", "mcap", "geometry", "places", "scene", "world", "sim", "render", "sensors", "control", "metrics", "topics", "record", "runtime",
         "report", "web", "bridge", "studio"]
 
@@ -127,8 +126,6 @@ def gtest(tally, preset, module, only=None, shard_filter=None, shard=None):
     tally.add(name, max(ran - failed - skipped, 0), failed, skipped, seconds, "" if not failed else tail(result.stdout, 80))
 
 
-# What CI leaves out under sanitizers.
-TOO_SLOW_SANITIZED = labels.without(labels.SLOW, labels.FULL, labels.UNSANITIZED)
 MUTATIONS = 10_000  # damaged files per reader; without GLOAM_MUTATIONS the tests take 200
 
 
@@ -368,13 +365,6 @@ def ci(tally):
     slow_units(tally, labels.only(labels.SLOW, but=labels.FULL))
     e2e_tests(tally)
     check_lint_of_changes(tally)
-    touched = {name.split("/")[1] for name in changed("src/*")}
-    modules = [module for module in UNIT if module in READERS & touched]
-    if modules and build(tally, "asan", [f"gloam_{module}_test" for module in modules]):
-        units(tally, "asan", TOO_SLOW_SANITIZED, modules)
-    if any(name.startswith(("src/base/", "src/sim/")) for name in changed("src/*")) and build(tally, "tsan", ["gloam_base_test", "gloam_sim_test"]):
-        gtest(tally, "tsan", "base", shard_filter=TOO_SLOW_SANITIZED)
-        gtest(tally, "tsan", "sim", shard_filter=labels.only(labels.THREADS, but=labels.SLOW + labels.FULL + labels.UNSANITIZED))
     run(["cmake", "--preset", "release"])  # it may have been set up before nvcc was there
     if build(tally, "release", ["gloam_cuda_test", "gloam_gas_cuda_test"]):  # without a card this shows that the card's source compiles
         gtest(tally, "release", "cuda")
@@ -412,6 +402,7 @@ def full(tally):
         "slow tests of Python": slow_api_tests,
         "memory of Python under asan": sanitized_api_tests,
         "recipes": lambda t: python_tests(t, "tests/e2e/recipes.py"),
+        "agreement with Mitsuba": lambda t: python_tests(t, "tests/e2e/mitsuba_scenes.py"),
         "Mitsuba's mutations": lambda t: python_tests(t, "tests/e2e/mitsuba_mutations.py"),
     }
     for module in modules_with("Mutations"):
