@@ -139,9 +139,9 @@ double deviation(const Studio& studio, const std::vector<Picture>& pictures) {
 }
 
 struct Found {
-  Estimate many;                     ///< [cd/m²]
-  std::map<std::string, Estimate> few;  ///< over it, by tier and samples
-  std::map<std::string, Estimate> kept; ///< denoised over the same samples as they are
+  Estimate many;                         ///< [cd/m²]
+  std::map<std::string, Estimate> few;   ///< over it, by tier and samples
+  std::map<std::string, Estimate> kept;  ///< denoised over the same samples as they are
   double deviation = 0;
 };
 
@@ -187,8 +187,8 @@ Result<Found> measure(const Options& options, const Studio& studio, const std::s
   }
   std::vector<Color> fast;
   for (int i = 0; i < options.seeds; ++i) {
-    GLOAM_TRY(const auto frames, studio.take(studio.render(1, true, "fast"),
-                                             static_cast<uint64_t>(1 + i), kFrames));
+    GLOAM_TRY(const auto frames,
+              studio.take(studio.render(1, true, "fast"), static_cast<uint64_t>(1 + i), kFrames));
     fast.push_back(mean_of(frames.back()));
     if (i == 0) GLOAM_TRY_STATUS(save(options, studio, name + "_fast", frames.back()));
   }
@@ -213,8 +213,8 @@ void print(const std::string& name, const Found& found, bool json) {
         rows += fmt::format(", \"kept\": [{}]", text_of(kept->second.mean, ", "));
       rows += '}';
     } else {
-      rows += fmt::format("  {}: {} (± {})", key, text_of(ratio.mean, "/"),
-                          text_of(ratio.error, "/"));
+      rows +=
+          fmt::format("  {}: {} (± {})", key, text_of(ratio.mean, "/"), text_of(ratio.error, "/"));
       if (kept != found.kept.end())
         rows += fmt::format(", of its samples {}", text_of(kept->second.mean, "/"));
       rows += '\n';
@@ -234,8 +234,8 @@ Status run(const Options& options, const std::string& file) {
   GLOAM_TRY(const auto simulation, LiveSimulation::create(world, {.pace = Pace::kLockstep},
                                                           {.metering = Metering::kNever}));
   GLOAM_TRY(const auto shared, simulation->renderer());
-  GLOAM_TRY(const int64_t steps, step_of_time(std::atof(options.time.c_str()),
-                                              simulation->step_rate(), "a time"));
+  GLOAM_TRY(const int64_t steps,
+            step_of_time(std::atof(options.time.c_str()), simulation->step_rate(), "a time"));
   GLOAM_TRY_STATUS(simulation->step(steps));
   GLOAM_TRY(const auto solver, PoseSolver::create(world.compiled()));
   CameraRequest request;

@@ -12,7 +12,7 @@ constexpr float kRatio = 4;           // to the third brightest of the pixels ar
 constexpr int kRadius = 2;            // of those [px]
 constexpr int kSpread = 16;           // how far the light of a firefly is spread [px]
 constexpr float kMostSpread = 0.02f;  // fraction of a firefly's limit that one pixel may get of it
-constexpr float kMostKept = 10;      // light of a firefly, in that of all pixels around it
+constexpr float kMostKept = 10;       // light of a firefly, in that of all pixels around it
 constexpr float kFacing = 0.9f;       // cosine between surfaces that take each other's light
 
 /// Values that are infinite or no number are errors elsewhere, not light.
