@@ -8,9 +8,12 @@ import unittest
 from e2e.support import ROOT
 
 
+OWN = {**os.environ, "GLOAM_PRESET": "release", "GLOAM_AS_BUILT": ""}
+
+
 def start(*arguments):
     return subprocess.run([str(ROOT / "gloam"), *arguments], cwd=ROOT, text=True, capture_output=True, stdin=subprocess.DEVNULL,
-                          timeout=600, env={**os.environ, "GLOAM_PRESET": "release"})
+                          timeout=600, env=OWN)
 
 
 class Locks(unittest.TestCase):
@@ -37,12 +40,25 @@ class Locks(unittest.TestCase):
         with open(ROOT / "build" / ".lock-release", "w") as lock:
             fcntl.flock(lock, fcntl.LOCK_EX)
             waiting = subprocess.Popen([str(ROOT / "gloam"), "--version"], cwd=ROOT, text=True, stdout=subprocess.PIPE,
-                                       stderr=subprocess.PIPE, env={**os.environ, "GLOAM_PRESET": "release"})
+                                       stderr=subprocess.PIPE, env=OWN)
             self.addCleanup(waiting.kill)
             self.assertIn("waiting for another set-up (release)", waiting.stderr.readline())
         out, _ = waiting.communicate(timeout=300)
         self.assertEqual(waiting.returncode, 0)
         self.assertIn("MuJoCo", out)
+
+
+    def test_tests_run_what_was_built(self):
+        self.assertEqual(start("--version").returncode, 0)
+        new = ROOT / "src" / "base" / ".newer"
+        new.touch()
+        self.addCleanup(new.unlink)
+        with open(ROOT / "build" / ".lock-release", "w") as lock:
+            fcntl.flock(lock, fcntl.LOCK_EX)
+            result = subprocess.run([str(ROOT / "gloam"), "--version"], cwd=ROOT, text=True, capture_output=True, timeout=60,
+                                    env={**OWN, "GLOAM_AS_BUILT": "1"})
+        self.assertIn("MuJoCo", result.stdout)
+        self.assertNotIn("waiting", result.stderr)
 
 
 class Python(unittest.TestCase):
