@@ -20,6 +20,7 @@ class FoxgloveClient:
         self._socket = socket.create_connection((name, int(port)), 10)
         self._input = b""
         self.channels, self.services, self.info, self._id = {}, {}, None, 0
+        self.told = None  # the last time that the server told [s]
         lines = [f"GET /{target} HTTP/1.1", f"Host: {host}", "Upgrade: websocket", "Connection: Upgrade", "Sec-WebSocket-Version: 13",
                  f"Sec-WebSocket-Key: {base64.b64encode(os.urandom(16)).decode()}",
                  f"Sec-WebSocket-Protocol: {', '.join(protocols)}", *headers]
@@ -75,6 +76,8 @@ class FoxgloveClient:
             elif opcode & 15 == 8:
                 raise ConnectionError(payload[2:].decode())
             elif opcode & 15 == 2:
+                if payload[0] == 2:
+                    self.told = int.from_bytes(payload[1:9], "little") * 1e-9
                 return payload
             else:
                 message = json.loads(payload)
@@ -125,6 +128,13 @@ class FoxgloveClient:
     def time(self, seconds=20):
         """The next time that the server tells [s]."""
         return self.wait(lambda m: struct.unpack_from("<Q", m, 1)[0] * 1e-9 if isinstance(m, bytes) and m[0] == 2 else None, seconds)
+
+    def until(self, seconds_told, seconds=20):
+        """The last time that the server told [s], once it is that late; it may have come before another answer."""
+        end = time.monotonic() + seconds
+        while self.told is None or self.told < seconds_told:
+            self.next(max(0.001, end - time.monotonic()))
+        return self.told
 
     def call(self, service, request=None, seconds=60):
         """The response of a service, in JSON."""

@@ -161,7 +161,7 @@ class Live(FoxgloveTest):
         self.assertTrue(client.parameters("paused")["paused"])
         before = client.time()
         self.assertEqual(client.call("/step_simulation", {"steps": 50})["result"]["result"], 1)
-        self.assertAlmostEqual(client.wait(lambda m: t if (t := time_of(m)) is not None and t > before + 0.099 else None), before + 0.1, delta=0.03)
+        self.assertAlmostEqual(client.until(before + 0.099), before + 0.1, delta=0.03)
         self.assertLessEqual({"ada", "bo"}, set(client.call("/get_entities")["entities"]))
         client.set_parameter("speed", 0.5)
         self.assertEqual(client.parameters("speed"), {"speed": 0.5})
