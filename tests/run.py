@@ -215,6 +215,7 @@ def e2e_tests(tally, only=None):
     if python := api_python(tally):
         mark = "slow or not slow" if only else "not slow"
         parts += [lambda f=file: api_tests(tally, python, f, mark, only) for file in api_files()]
+        build(tally, "release")  # CMake was told of Python: what that has changed must not be linked under the hands of tests
     with ThreadPoolExecutor(2) as pool:
         list(pool.map(lambda part: part(), parts))
 
