@@ -1,4 +1,4 @@
-// What few samples make of a scene's light: mean radiance of pictures of the path tier, denoised,
+// Light of a scene by few samples: mean radiance of pictures of the path tier, denoised,
 // and of the fast tier, against that of many samples, which are not denoised; and how much the
 // pictures of an instant differ from one another.
 //
@@ -80,7 +80,7 @@ struct Estimate {
   }
 };
 
-/// What takes pictures of one instant.
+/// Cameras' pictures of one instant.
 struct Studio {
   SharedRenderer& shared;
   CameraRequest request;

@@ -19,11 +19,6 @@ QUICK = ["--tier", "direct", "--spp", "1", "--resolution", "64x48"]
 NODE_CLIENT = ROOT / "tests" / "e2e" / "foxglove_client.mjs"
 
 
-def time_of(message):
-    """[s] of a time message; None of others."""
-    return int.from_bytes(message[1:9], "little") * 1e-9 if isinstance(message, bytes) and message[0] == 2 else None
-
-
 class Served:
     """A program that serves Foxglove, by its two addresses."""
 

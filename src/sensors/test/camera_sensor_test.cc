@@ -97,7 +97,7 @@ class CameraSensorTest : public ::testing::Test {
   std::mutex mutex_;
 };
 
-// What rests must not swim, and no pattern may move along with a camera.
+// Things at rest must not swim, and no pattern may move along with a camera.
 TEST_F(CameraSensorTest, DenoisedPicturesHaveTheSameDrawsWhileTheCameraStands) {
   const PoseFrame now = poses_at(0);
   CameraRequest request = ask("plain", {"radiance"});

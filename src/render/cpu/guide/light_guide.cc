@@ -23,7 +23,7 @@ constexpr float kGuidedProbability =
     0.75f;  // of directions by the guide, where surfaces are diffuse
 constexpr int kFacings = LightGuide::kFacings;
 
-/// Those that are the same in every picture.
+/// Volumes that are the same in every picture.
 std::vector<VolumeView> still_volumes(const MediaView& media) {
   std::vector<VolumeView> still;
   for (uint32_t i = 0; i < media.volumes.size; ++i) {

@@ -166,7 +166,7 @@ GLOAM_HD Choice choose(const MediaView& media, Vec3f p, Vec3f n, Vec2f* u) {
 GLOAM_HD LightSample sample(const MediaView& media, Vec3f p, Vec3f n, Vec2f u) {
   const Choice choice = choose(media, p, n, &u);
   if (!(choice.probability > 0)) return {};
-  // What has a probability is one of them. NOLINTNEXTLINE(clang-analyzer-core.NonNullParamChecker)
+  // A choice with a probability has a glow. NOLINTNEXTLINE(clang-analyzer-core.NonNullParamChecker)
   LightSample s = sample(media, *choice.glow, p, u);
   s.pdf *= choice.probability;
   return s;
