@@ -22,11 +22,17 @@ Vec3f absorption_of(double secchi_depth) {
   return kPureWater + Vec3f{more, more, more};
 }
 
+// A microfacet distribution's alpha is the root of the mean square slope (Beckmann's; GGX with that
+// alpha is taken for it), and OpenPBR's roughness the root of alpha.
+float roughness_of(double mean_square_slope) {
+  return static_cast<float>(std::sqrt(std::sqrt(mean_square_slope)));
+}
+
 MaterialDescription material_of(const WaterDescription& water) {
   MaterialDescription material;
   material.name = water.name;
   material.base_color = {1, 1, 1};
-  material.roughness = 0;
+  material.roughness = roughness_of(water.short_slopes);
   material.ior = kIndex;
   material.transmission_weight = 1;
   material.transmission_depth = 1;

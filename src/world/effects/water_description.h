@@ -35,6 +35,7 @@ struct WaterDescription {
   double viscosity = 0;                      ///< [Pa s]
   Vec3 current;                              ///< [m/s]
   double clarity = 0;                        ///< Secchi depth [m]
+  double short_slopes = 0;                   ///< mean square slope of waves too short for `waves`
   std::vector<WaveDescription> waves;
   WaterGrid ripples;        ///< none = bodies make no waves
   Rational ripple_rate;     ///< steps of them [Hz]

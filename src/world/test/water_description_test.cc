@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
+#include <numbers>
 
 #include "scene/test/temp_folder.h"
 #include "world/effects/visual_water.h"
@@ -71,6 +72,31 @@ TEST_F(Water, StillWaterIsTwoTriangles) {
   ASSERT_TRUE(world.ok()) << world.error().to_string();
   EXPECT_EQ(world->compiled()->waters[0].mesh, (WaterGrid{1, 1, 4, 4}));
   EXPECT_EQ(world->compiled()->waters[0].ripples.nx, 0);
+}
+
+TEST_F(Water, WindRoughensWhatWavesDoNot) {
+  const auto slopes = [&](const std::string& text) {
+    const Result<World> world = compile("[[water]]\nname = \"pond\"\nwave_period = 1\n" + text);
+    EXPECT_TRUE(world.ok()) << world.error().to_string();
+    return world.ok() ? world->compiled()->waters[0].short_slopes : -1;
+  };
+  constexpr double kOfSea = 0.003 + 0.00512 * 5;  // Cox and Munk 1954
+  EXPECT_EQ(slopes(""), 0);
+  EXPECT_EQ(slopes("[weather]\nwind = 0\n"), 0);
+  EXPECT_DOUBLE_EQ(slopes("[weather]\nwind = 5\n"), kOfSea);
+  const double beside_waves = slopes("wave_height = 0.04\n[weather]\nwind = 5\n");
+  // 40 waves of k >= k of the peak have at least its slope: k² times the variance of the height.
+  const double k = 4 * std::numbers::pi * std::numbers::pi / 9.81;
+  EXPECT_LT(beside_waves, kOfSea - 0.8 * k * k * 0.01 * 0.01);
+  EXPECT_GT(beside_waves, 0.5 * kOfSea);
+  EXPECT_EQ(slopes("wave_height = 0.2\n[weather]\nwind = 1\n"), 0) << "steep waves leave none";
+
+  const Result<World> world = compile("[[water]]\nname = \"pond\"\n[weather]\nwind = 5\n");
+  ASSERT_TRUE(world.ok()) << world.error().to_string();
+  const Result<RenderDescription> seen = describe_for_rendering(*world->compiled());
+  ASSERT_TRUE(seen.ok());
+  const auto row = static_cast<size_t>(seen->instances.back().material);
+  EXPECT_NEAR(std::pow(seen->materials[row].roughness, 4), kOfSea, 1e-6);
 }
 
 TEST_F(Water, RefusesWhatWaterCannotDo) {
