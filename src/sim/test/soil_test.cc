@@ -274,6 +274,42 @@ TEST(SoilBedRun, HeapsLieAtTheirAngleOfRepose) {
   EXPECT_LT(highest, 0.03);
 }
 
+// Steepest slope of the walls of a rut that a wheel has left at an angle to the rows of cells.
+double steepest_wall(const char* kind) {
+  SoilOptions o = bed_of(kind, 2, 0.3);
+  constexpr double kCell = 0.0125;
+  o.cell = kCell;
+  OnSoil wheel(world_with_soil(
+      "<body pos='-.6 -.1 .1' euler='0 0 4'><joint type='slide' axis='1 0 0'/>"
+      "<joint name='z' type='slide' axis='0 0 1' damping='200'/><inertial pos='0 0 0' mass='1' "
+      "diaginertia='1 1 1'/>"
+      "<body><joint name='turn' type='hinge' axis='0 1 0'/><geom type='cylinder' size='.1 .03' "
+      "euler='90 0 0' mass='9'/></body></body>",
+      o, "<actuator><velocity joint='turn' kv='50'/></actuator>"));
+  wheel.run(0.5);
+  EXPECT_TRUE(wheel.sim->post({.what = SetControl{Actuator{0}, 6}}).ok());
+  wheel.run(2);
+  EXPECT_GT(wheel.q(0), 0.5) << kind << ": it is stuck";
+  double steepest = 0, deepest = 0;
+  for (int i = 0; i < 24; ++i) {  // what is behind the wheel
+    for (int j = -40; j < 40; ++j) {
+      const double x = -0.5 + kCell * i, y = kCell * (j + 0.5), here = wheel.track(x, y);
+      deepest = std::min(deepest, here);
+      for (const double beside : {wheel.track(x + kCell, y), wheel.track(x, y + kCell)})
+        steepest = std::max(steepest, std::abs(here - beside) / kCell);
+      const double across = std::abs(here - wheel.track(x + kCell, y + kCell));
+      steepest = std::max(steepest, across / kCell / std::numbers::sqrt2);
+    }
+  }
+  EXPECT_LT(deepest, -0.008) << kind << ": there is no rut";
+  return steepest;
+}
+
+TEST(SoilBedRun, WallsOfDrySandFallInBehindAWheelAndThoseOfRegolithStand) {
+  EXPECT_LT(steepest_wall("dry_sand"), 1.1 * std::tan(28 * M_PI / 180));
+  EXPECT_GT(steepest_wall("lunar"), 1.5 * std::tan(35 * M_PI / 180));
+}
+
 TEST(SoilBedRun, ABallThatFallsStaysWhereItFell) {
   OnSoil ball(world_with_soil(
       "<body pos='0 0 1'><freejoint/><geom type='sphere' size='.1' density='3000'/></body>",

@@ -29,18 +29,20 @@ constexpr double kLeastDepth = 0.01;  // least depth of it there, over its depth
 // Shear displacement: Wong, section 2.4.3: 1 cm firm sand, 2.5 cm loose, 0.6 cm clay, 2.5 cm snow.
 // The rise at the sides is our estimate: wet clay and mud keep their volume, snow is compacted.
 // Unloading: A_u of LETE sand for what is mineral, of Petawawa's snow A: Wong, table 2.4.
+// Walls of prints stand in what is wet or compacted, and on the moon (photographs of bootprints).
 constexpr double kSandUnloading = 503e6, kSnowUnloading = 109.6e6;  // [N/m⁴]
 struct KindRow {
   double n, k_c, k_phi, cohesion, friction, shear, a_u, aside;
+  bool walls_stand = true;
 };
 constexpr std::array<KindRow, kSoilKinds.size()> kKinds = {{
-    {1.1, 0.99e3, 1528.43e3, 1040, 28, 0.025, kSandUnloading, 0.5},    // dry_sand
-    {0.7, 5.27e3, 1515.04e3, 1720, 29, 0.025, kSandUnloading, 0.4},    // sandy_loam
-    {0.5, 13.19e3, 692.15e3, 4140, 13, 0.01, kSandUnloading, 0.8},     // clayey_soil
-    {0.2, 16.43e3, 1724.69e3, 68950, 20, 0.006, kSandUnloading, 0.6},  // lean_clay
-    {1.6, 4.37e3, 196.72e3, 1030, 19.7, 0.025, kSnowUnloading, 0.05},  // snow
-    {0.5, 0.77e3, 51.91e3, 5170, 11, 0.01, kSandUnloading, 0.9},       // mud
-    {1.0, 1.4e3, 820e3, 170, 35, 0.018, kSandUnloading, 0.3},          // lunar
+    {1.1, 0.99e3, 1528.43e3, 1040, 28, 0.025, kSandUnloading, 0.5, false},  // dry_sand
+    {0.7, 5.27e3, 1515.04e3, 1720, 29, 0.025, kSandUnloading, 0.4},         // sandy_loam
+    {0.5, 13.19e3, 692.15e3, 4140, 13, 0.01, kSandUnloading, 0.8},          // clayey_soil
+    {0.2, 16.43e3, 1724.69e3, 68950, 20, 0.006, kSandUnloading, 0.6},       // lean_clay
+    {1.6, 4.37e3, 196.72e3, 1030, 19.7, 0.025, kSnowUnloading, 0.05},       // snow
+    {0.5, 0.77e3, 51.91e3, 5170, 11, 0.01, kSandUnloading, 0.9},            // mud
+    {1.0, 1.4e3, 820e3, 170, 35, 0.018, kSandUnloading, 0.3},               // lunar
 }};
 
 Error soil_error(const SoilOptions& o, std::string message, std::string hint) {
@@ -145,7 +147,7 @@ SoilStrength soil_strength(const std::string& kind) {
   const auto row = std::find(kSoilKinds.begin(), kSoilKinds.end(), kind) - kSoilKinds.begin();
   const KindRow& k = kKinds[static_cast<size_t>(row)];
   return {k.n,     k.k_c, k.k_phi, k.cohesion, std::tan(k.friction * std::numbers::pi / 180),
-          k.shear, 0,     k.a_u,   k.aside};
+          k.shear, 0,     k.a_u,   k.aside,    k.walls_stand};
 }
 
 Result<std::vector<SoilDescription>> describe_soils(const Scene& scene, const mjModel& model) {

@@ -25,6 +25,7 @@ struct SoilStrength {
   double k_0 = 0;           ///< [N/m³]
   double a_u = 0;           ///< [N/m⁴]
   double aside = 0;         ///< fraction of what is displaced that rises beside it
+  bool walls_stand = true;  ///< walls of prints do; else they fall in as the body leaves
 };
 
 struct SoilDescription {

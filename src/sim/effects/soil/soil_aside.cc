@@ -55,34 +55,62 @@ void SoilBed::push_aside(const SoilTouch& touch, const double* velocity, double 
     const double share = 2.0 * left / (wide * (wide + 1));
     tracks_.set_height(
         cell, tracks_.height(cell) + static_cast<float>(share * volume / soil_.dx / soil_.dy));
-    slide(cell);
+    settle(cell);
     --left;
   }
 }
 
-// Loose soil slides down from a cell to its lowest neighbour, and on from there, until it is no
-// steeper than its friction holds; not into cells that a body occupies.
-void SoilBed::slide(int cell) {
-  for (int way = 0; way < kFarthest; ++way) {
-    const int i = cell % soil_.nx, j = cell / soil_.nx;
-    int lowest = -1;
-    double excess = 0;  // [m]
-    const auto look = [&](bool is_inside, int beside, double distance) {
-      if (!is_inside || contacts_.is_touched(beside)) return;
-      const double over = double{tracks_.height(cell)} - double{tracks_.height(beside)} -
-                          distance * soil_.strength.tan_friction;
-      if (over > excess) excess = over, lowest = beside;
-    };
-    look(i > 0, cell - 1, soil_.dx);
-    look(i + 1 < soil_.nx, cell + 1, soil_.dx);
-    look(j > 0, cell - soil_.nx, soil_.dy);
-    look(j + 1 < soil_.ny, cell + soil_.nx, soil_.dy);
-    if (excess < kNoSlide) return;
-    const auto part = static_cast<float>(excess / 2);
-    tracks_.set_height(cell, tracks_.height(cell) - part);
-    tracks_.set_height(lowest, tracks_.height(lowest) + part);
-    cell = lowest;
+SoilBed::Steep SoilBed::steepest(int cell, Slope slope) const {
+  const int i = cell % soil_.nx, j = cell / soil_.nx;
+  const double down = slope == Slope::kDown ? 1 : -1;
+  Steep most;
+  for (int v = std::max(j - 1, 0); v <= std::min(j + 1, soil_.ny - 1); ++v) {
+    for (int u = std::max(i - 1, 0); u <= std::min(i + 1, soil_.nx - 1); ++u) {
+      const int beside = v * soil_.nx + u;
+      if (beside == cell || contacts_.is_touched(beside)) continue;
+      const double distance = std::hypot((u - i) * soil_.dx, (v - j) * soil_.dy);
+      const double higher = double{tracks_.height(cell)} - double{tracks_.height(beside)};
+      const double excess = down * higher - distance * soil_.strength.tan_friction;
+      if (excess > most.excess) most = {beside, excess};
+    }
   }
+  return most.excess < kNoSlide ? Steep{} : most;
+}
+
+// Loose soil slides from a cell to its lowest neighbour, and where walls do not stand also into it
+// from its highest, and on from there, until it is no steeper than its friction holds; not into
+// cells that a body occupies.
+void SoilBed::settle(int first) {
+  unsettled_.assign(1, first);
+  for (int slides = 0; !unsettled_.empty() && slides < kMostSlides;) {
+    const int cell = unsettled_.back();
+    Steep beside = steepest(cell, Slope::kDown);
+    int from = cell, to = beside.cell;
+    if (to < 0 && !soil_.strength.walls_stand) {
+      beside = steepest(cell, Slope::kUp);
+      from = beside.cell, to = cell;
+    }
+    if (beside.cell < 0) {
+      unsettled_.pop_back();
+      continue;
+    }
+    const auto part = static_cast<float>(beside.excess / 2);
+    tracks_.set_height(from, tracks_.height(from) - part);
+    tracks_.set_height(to, tracks_.height(to) + part);
+    unsettled_.push_back(beside.cell);
+    ++slides;
+  }
+}
+
+// Where a body has left a print, nothing holds the walls any longer.
+void SoilBed::let_walls_fall() {
+  if (soil_.strength.walls_stand || contacts_.round() == round_) return;
+  round_ = contacts_.round();
+  for (const int cell : held_) {
+    if (!contacts_.is_touched(cell)) settle(cell);
+  }
+  held_.clear();
+  for (const SoilTouch& touch : contacts_.touches()) held_.push_back(touch.cell);
 }
 
 }  // namespace gloam

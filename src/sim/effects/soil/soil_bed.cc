@@ -13,6 +13,7 @@ SoilBed::SoilBed(const SoilDescription& soil, const mjModel& model, std::span<co
   const size_t most = contacts_.most_touches();
   bodies_.reserve(geoms.size()), moduli_.reserve(geoms.size());
   lanes_.reserve(most / SoilLanes::kSide + geoms.size()), changes_.reserve(most);
+  held_.reserve(most), unsettled_.reserve(kMostSlides + 1);
   loads_.reserve(geoms.size());
   for (const int geom : geoms) {
     const int body = model.geom_bodyid[geom];
@@ -29,6 +30,7 @@ void SoilBed::reset() {
   for (Answer& answer : answers_of_) answer.step = 0;
   contacts_.reset();
   loads_.clear();
+  held_.clear();
   tracks_.reset();
 }
 
@@ -67,6 +69,7 @@ uint64_t SoilBed::press(uint32_t step, const mjModel& m, const mjData& d,
     if (is_near(m, d, collider->geom())) contacts_.add(*collider);
   }
   contacts_.finish();
+  let_walls_fall();
   find_bodies();
   changes_.clear();
   const std::span<const SoilTouch> touches = contacts_.touches();

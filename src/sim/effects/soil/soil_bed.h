@@ -66,7 +66,16 @@ class SoilBed {
   void fill_in(uint32_t step, double dt, const SoilTouch& touch, SoilCell* cell) const;
   float lower_track(const SoilTouch& touch);
   void push_aside(const SoilTouch& touch, const double* velocity, double volume);
-  void slide(int cell);
+  enum class Slope { kDown, kUp };
+  /// Neighbour that is too far below or above a cell for loose soil; none = nothing slides.
+  struct Steep {
+    int cell = -1;
+    double excess = 0;  // [m]
+  };
+  static constexpr int kMostSlides = 256;  // from cell to cell, that one change sets off
+  Steep steepest(int cell, Slope slope) const;
+  void settle(int cell);
+  void let_walls_fall();
   double push_body(const mjModel& model, mjData& data, const Body& body, uint32_t step,
                    ResponseSolver* solver);
   double limit_work(const Body& body, const double* free, const double* change, double dt,
@@ -82,6 +91,9 @@ class SoilBed {
   std::vector<Body> bodies_;      // bodies of this step
   std::vector<SoilLanes> lanes_;  // lanes of their touches
   std::vector<Change> changes_;   // changes of touched cells, scratch
+  std::vector<int> unsettled_;    // cells that settle() has yet to look at, scratch
+  std::vector<int> held_;         // cells that were touched in round_
+  uint32_t round_ = 0;            // round of contacts_ that was seen last
   std::vector<ContactLoad> loads_;
   SoilTracks tracks_;
 };

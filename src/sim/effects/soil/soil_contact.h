@@ -54,6 +54,8 @@ class SoilContacts {
   double width(int patch) const { return patches_[static_cast<size_t>(patch)].width; }
   /// Middle of a patch, x and y [m].
   const double* centre(int patch) const { return patches_[static_cast<size_t>(patch)].centre; }
+  /// Number that changes whenever the touched cells may have changed.
+  uint32_t round() const { return round_; }
   bool is_touched(int cell) const { return marks_[static_cast<size_t>(cell)].round == round_; }
 
  private:
