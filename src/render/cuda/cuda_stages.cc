@@ -69,8 +69,7 @@ class Card final : public CudaStages {
   RenderStats render(const CudaJob& job, Film* film) override {
     const RenderSettings& settings = job.settings;
     DevicePicture picture = make_picture(job, film->width, film->height);
-    const bool plain =
-        job.view.is_plain() && job.camera.is_plain() && job.clip.is_idle() && !job.has_motion;
+    const bool plain = job.view.is_plain() && job.camera.is_plain() && !job.has_motion;
     place_film(*film, &picture.film);
     start_.record(stream_);
     scene_.upload(job, stream_, &picture);

@@ -72,12 +72,22 @@ __device__ __noinline__ bool trace_past(const DevicePicture& p, const Ray& ray, 
   return trace_in_view(p.scene, p.tracer, p.camera, p.clip, ray, hit);
 }
 
+/// Whether the picture's camera sees the first hit of its ray.
+__device__ __forceinline__ bool is_in_view(const DevicePicture& p, const Ray& ray,
+                                           const RayHit& hit) {
+  return hit.t >= p.clip.start(p.camera, ray) && !p.clip.passes<float>(p.scene, ray, hit, true);
+}
+/// The same as a function: placing the surface would crowd the registers of plain kernels.
+__device__ __noinline__ bool called_is_in_view(const DevicePicture& p, const Ray& ray,
+                                               const RayHit& hit) {
+  return is_in_view(p, ray, hit);
+}
+
 /// First surface that a ray of the camera sees: `found` and `hit` are the first that it meets.
 __device__ __forceinline__ bool clip_first(const DevicePicture& p, const Ray& ray, bool found,
                                            RayHit* hit) {
-  if (kPlainScenes || !found || p.clip.is_idle()) return found;
-  const bool is_seen =
-      hit->t >= p.clip.start(p.camera, ray) && !p.clip.passes<float>(p.scene, ray, *hit, true);
+  if (!found || p.clip.is_idle()) return found;
+  const bool is_seen = kPlainScenes ? called_is_in_view(p, ray, *hit) : is_in_view(p, ray, *hit);
   return is_seen || trace_past(p, ray, hit);
 }
 
