@@ -25,6 +25,11 @@ pkg_check_modules(OPENH264 IMPORTED_TARGET openh264)
 # Bridges: what is missing is told of when such a bridge is asked for.
 find_package(fastrtps QUIET)
 pkg_check_modules(ZMQ IMPORTED_TARGET libzmq)
+# Users of zmq.h need no folders or options of what libzmq itself is made with. CMake would give them in one form when it
+# configures first and in another from its cache, and each change compiles the programs anew.
+if(TARGET PkgConfig::ZMQ)
+  set_target_properties(PkgConfig::ZMQ PROPERTIES INTERFACE_COMPILE_OPTIONS "" INTERFACE_INCLUDE_DIRECTORIES "")
+endif()
 find_path(CPPZMQ_INCLUDE zmq.hpp)
 find_path(MSGPACK_INCLUDE msgpack.hpp)
 
