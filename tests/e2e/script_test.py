@@ -1,4 +1,5 @@
 """The script ./gloam: what it waits for, and what it does not."""
+import contextlib
 import fcntl
 import os
 import subprocess
@@ -32,13 +33,19 @@ class Locks(unittest.TestCase):
         self.assertIn("MuJoCo", result.stdout)
         self.assertNotIn("waiting", result.stderr)
 
-    def test_a_source_newer_than_the_program_is_built_under_the_lock(self):
-        self.assertEqual(start("--version").returncode, 0)
+    @contextlib.contextmanager
+    def newer_source_while_another_builds(self):
+        """A source that the program was not built of, and the build folder's lock in somebody's hands."""
         new = ROOT / "src" / "base" / ".newer"
         new.touch()
         self.addCleanup(new.unlink)
         with open(ROOT / "build" / ".lock-release", "w") as lock:
             fcntl.flock(lock, fcntl.LOCK_EX)
+            yield
+
+    def test_a_source_newer_than_the_program_is_built_under_the_lock(self):
+        self.assertEqual(start("--version").returncode, 0)
+        with self.newer_source_while_another_builds():
             waiting = subprocess.Popen([str(ROOT / "gloam"), "--version"], cwd=ROOT, text=True, stdout=subprocess.PIPE,
                                        stderr=subprocess.PIPE, env=OWN)
             self.addCleanup(waiting.kill)
@@ -47,14 +54,9 @@ class Locks(unittest.TestCase):
         self.assertEqual(waiting.returncode, 0)
         self.assertIn("MuJoCo", out)
 
-
     def test_tests_run_what_was_built(self):
         self.assertEqual(start("--version").returncode, 0)
-        new = ROOT / "src" / "base" / ".newer"
-        new.touch()
-        self.addCleanup(new.unlink)
-        with open(ROOT / "build" / ".lock-release", "w") as lock:
-            fcntl.flock(lock, fcntl.LOCK_EX)
+        with self.newer_source_while_another_builds():
             result = subprocess.run([str(ROOT / "gloam"), "--version"], cwd=ROOT, text=True, capture_output=True, timeout=60,
                                     env={**OWN, "GLOAM_AS_BUILT": "1"})
         self.assertIn("MuJoCo", result.stdout)
