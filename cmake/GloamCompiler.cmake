@@ -16,7 +16,12 @@ if(GLOAM_MOLD AND NOT GLOAM_SANITIZE)
   add_link_options(-fuse-ld=mold)
 endif()
 
-add_compile_options(-Wall -Wextra -Werror -Wno-missing-field-initializers -ffp-contract=off -fno-math-errno)
+option(GLOAM_WERROR "Treat warnings as errors, as CI does; a compiler that CI does not use may warn of other things" OFF)
+set(werror)
+if(GLOAM_WERROR)
+  set(werror -Werror)
+endif()
+add_compile_options(-Wall -Wextra ${werror} -Wno-missing-field-initializers -ffp-contract=off -fno-math-errno)
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   # GCC 12 reports std::string members of values returned through std::variant as uninitialised (GCC bug 105562 and kin).
   add_compile_options(-Wno-maybe-uninitialized -Wno-restrict)

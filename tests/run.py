@@ -87,9 +87,13 @@ def build_alone(tally, preset, targets):
     start = time.time()
     folder, presets = BUILD / preset, ROOT / "CMakePresets.json"
     rules, result = folder / "build.ninja", None
+    warnings = os.environ.get("GLOAM_WERROR")  # as in ./gloam: a folder that was set up otherwise is configured again, once
+    options = [f"-DGLOAM_WERROR={warnings}"] if warnings else []
     # Afresh: where a preset has come to name another compiler, CMake would forget all else that it sets.
     if not rules.exists() or rules.stat().st_mtime < presets.stat().st_mtime:
-        result = run(["cmake", "--fresh", "--preset", preset])
+        result = run(["cmake", "--fresh", "--preset", preset, *options])
+    elif warnings and f"GLOAM_WERROR:BOOL={warnings}" not in (folder / "CMakeCache.txt").read_text().splitlines():
+        result = run(["cmake", "--preset", preset, *options])
     if result is None or result.returncode == 0:
         result = run(["ninja", "-C", str(folder), *targets])
     ok = result.returncode == 0
@@ -313,6 +317,8 @@ def main():
     parser.add_argument("--only", metavar="NAME", help="only tests whose name contains NAME (unit and e2e, release build)")
     args = parser.parse_args()
     BUILD.mkdir(exist_ok=True)
+    if args.tier != "fast" and not args.only:  # what CI runs; a user's build has warnings that are no errors
+        os.environ.setdefault("GLOAM_WERROR", "ON")
     started, tally = time.time(), Tally()
     if build(tally, "release"):
         if args.only:
