@@ -188,16 +188,15 @@ class BareEmbree {
   void trace(const std::vector<std::vector<RecordedRay>>& rows) const {
     parallel_for("bare", static_cast<int64_t>(rows.size()), [&](int64_t row) {
       for (const RecordedRay& r : rows[static_cast<size_t>(row)]) {
-        RTCIntersectContext context;
-        rtcInitIntersectContext(&context);
+        EmbreeQuery embree;
         RTCRayHit query;
         query.ray = {r.ray.o.x, r.ray.o.y, r.ray.o.z,  0,   r.ray.d.x, r.ray.d.y,
                      r.ray.d.z, 0,         r.ray.tmax, ~0u, 0,         0};
         query.hit.geomID = query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
         if (r.any) {
-          rtcOccluded1(scene_.get(), &context, &query.ray);
+          embree.occluded(scene_.get(), &query.ray);
         } else {
-          rtcIntersect1(scene_.get(), &context, &query);
+          embree.intersect(scene_.get(), &query);
         }
       }
     });

@@ -7,7 +7,11 @@ find_package(PkgConfig REQUIRED)
 find_package(Eigen3 QUIET NO_MODULE)
 find_package(tomlplusplus QUIET)
 find_package(pugixml QUIET)
-find_package(embree 3 QUIET)
+# Embree 4, else 3: src/render/cpu/tracer/embree_api.h has what differs.
+find_package(embree 4 QUIET)
+if(NOT embree_FOUND)
+  find_package(embree 3 QUIET)
+endif()
 find_package(ZLIB REQUIRED)
 find_package(PNG QUIET)
 find_package(JPEG QUIET)
@@ -23,7 +27,16 @@ pkg_check_modules(LZ4 REQUIRED IMPORTED_TARGET liblz4)
 pkg_check_modules(OPENH264 IMPORTED_TARGET openh264)
 
 # Bridges: what is missing is told of when such a bridge is asked for.
-find_package(fastrtps QUIET)
+# Fast DDS 3, else 2, whose CMake package has the older name: src/bridge/ros2/dds_api.h has what differs.
+find_package(fastdds 3 QUIET)
+if(fastdds_FOUND)
+  set(GLOAM_FAST_DDS fastdds fastcdr)
+else()
+  find_package(fastrtps QUIET)
+  if(fastrtps_FOUND)
+    set(GLOAM_FAST_DDS fastrtps fastcdr)
+  endif()
+endif()
 pkg_check_modules(ZMQ IMPORTED_TARGET libzmq)
 # Users of zmq.h need no folders or options of what libzmq itself is made with. CMake would give them in one form when it
 # configures first and in another from its cache, and each change compiles the programs anew.

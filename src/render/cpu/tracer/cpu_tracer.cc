@@ -1,9 +1,9 @@
 #include "render/cpu/tracer/cpu_tracer.h"
 
-#include <embree3/rtcore.h>
-
 #include <cstring>
 #include <type_traits>
+
+#include "render/cpu/tracer/embree_api.h"
 
 namespace gloam {
 namespace {
@@ -54,25 +54,6 @@ struct Valid {
   explicit Valid(MaskLanes m) { store(select(m, UintLanes(~0u), UintLanes(0u)).v, lanes); }
 };
 
-template <class Packet>
-void intersect(MaskLanes active, RTCScene scene, RTCIntersectContext* context, Packet* q) {
-  const Valid valid(active);
-  if constexpr (kLaneCount == 16) {
-    rtcIntersect16(valid.lanes, scene, context, q);
-  } else {
-    rtcIntersect8(valid.lanes, scene, context, q);
-  }
-}
-template <class Packet>
-void occlude(MaskLanes active, RTCScene scene, RTCIntersectContext* context, Packet* q) {
-  const Valid valid(active);
-  if constexpr (kLaneCount == 16) {
-    rtcOccluded16(valid.lanes, scene, context, q);
-  } else {
-    rtcOccluded8(valid.lanes, scene, context, q);
-  }
-}
-
 }  // namespace
 
 void CpuTracer::resolve(uint32_t instance_id, uint32_t geometry_id, float time, RayHit* hit) const {
@@ -91,8 +72,7 @@ bool CpuTracer::by_embree(const Ray& ray, bool any, RayHit* hit) const {
   float tmax = ray.tmax;
   const uint32_t row = scan(scanned, ray, true, any, &tmax);
   if (any && row != 0) return true;
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
+  EmbreeQuery embree;
   RTCRayHit query;
   query.ray = {ray.o.x, ray.o.y,  ray.o.z, 0.0f, ray.d.x, ray.d.y,
                ray.d.z, ray.time, tmax,    ~0u,  0,       0};
@@ -100,10 +80,10 @@ bool CpuTracer::by_embree(const Ray& ray, bool any, RayHit* hit) const {
   for (const EmbreePart* part : {&fixed, &moving}) {
     if (part->scene == nullptr || !may_meet(part->bounds, ray, query.ray.tfar)) continue;
     if (any) {
-      rtcOccluded1(part->scene, &context, &query.ray);
+      embree.occluded(part->scene, &query.ray);
       if (query.ray.tfar < 0) return true;
     } else {
-      rtcIntersect1(part->scene, &context, &query);
+      embree.intersect(part->scene, &query);
     }
   }
   if (any) return false;
@@ -136,11 +116,9 @@ MaskLanes CpuTracer::closest_by_embree(const RayOf<FloatLanes>& ray, MaskLanes a
   fill(ray, tmax, &q.ray);
   store(UintLanes(RTC_INVALID_GEOMETRY_ID).v, q.hit.geomID);
   store(UintLanes(RTC_INVALID_GEOMETRY_ID).v, q.hit.instID[0]);
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
-  if (coherent) context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-  if (any(near_fixed)) intersect(near_fixed, fixed.scene, &context, &q);
-  if (any(near_moving)) intersect(near_moving, moving.scene, &context, &q);
+  EmbreeQuery embree(coherent);
+  if (any(near_fixed)) embree.intersect(Valid(near_fixed).lanes, fixed.scene, &q);
+  if (any(near_moving)) embree.intersect(Valid(near_moving).lanes, moving.scene, &q);
   const MaskLanes found = active & (load<UintLanes>(q.hit.geomID) != RTC_INVALID_GEOMETRY_ID);
   hit->t = load<FloatLanes>(q.ray.tfar);
   hit->primitive = load<UintLanes>(q.hit.primID);
@@ -165,13 +143,12 @@ MaskLanes CpuTracer::occluded_by_embree(const RayOf<FloatLanes>& ray, MaskLanes 
   if (!any(active & !blocked)) return blocked;
   alignas(64) RayPacket q;
   fill(ray, ray.tmax, &q);
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
+  EmbreeQuery embree;
   for (const EmbreePart* part : {&fixed, &moving}) {
     if (part->scene == nullptr) continue;
     const MaskLanes open = active & may_meet(part->bounds, ray, ray.tmax) & !blocked;
     if (!any(open)) continue;
-    occlude(open, part->scene, &context, &q);
+    embree.occluded(Valid(open).lanes, part->scene, &q);
     blocked = blocked | (open & (load<FloatLanes>(q.tfar) < 0.0f));
   }
   return blocked;

@@ -1,13 +1,12 @@
 #pragma once
 // Implementation of embree_scene.h with Embree.
 
-#include <embree3/rtcore.h>
-
 #include <map>
 #include <optional>
 #include <tuple>
 #include <vector>
 
+#include "render/cpu/tracer/embree_api.h"
 #include "render/cpu/tracer/embree_scene.h"
 #include "render/kernel/surface/shapes.h"
 #include "render/scene/scan_table.h"

@@ -106,6 +106,13 @@ Result<std::unique_ptr<EmbreeScene>> EmbreeScene::make() {
                      ? "out of memory: Embree does not start"
                      : fmt::format("Embree does not start (error {})", static_cast<int>(error))};
   }
+  if (!is_embree_of_headers(device.get()))
+    return Error{ErrorKind::kUnsupported,
+                 fmt::format("built with the headers of Embree {}, but the library that is loaded "
+                             "has another major version",
+                             RTC_VERSION_MAJOR),
+                 {},
+                 "./gloam setup builds for the Embree of this machine"};
   return std::unique_ptr<EmbreeScene>(new EmbreeBuild(std::move(device)));
 }
 
