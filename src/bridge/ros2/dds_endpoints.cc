@@ -1,6 +1,5 @@
 #include "bridge/ros2/dds_endpoints.h"
 
-#include <fastdds/rtps/common/WriteParams.h>
 #include <fastdds/dds/publisher/DataWriter.hpp>
 #include <fastdds/dds/publisher/DataWriterListener.hpp>
 #include <fastdds/dds/publisher/Publisher.hpp>
@@ -19,10 +18,6 @@
 
 namespace gloam::bridge {
 namespace {
-
-namespace dds = eprosima::fastdds::dds;
-namespace rtps = eprosima::fastrtps::rtps;
-using eprosima::fastrtps::types::ReturnCode_t;
 
 constexpr auto kReplyPatience = std::chrono::milliseconds(500);
 
@@ -79,7 +74,7 @@ class RawWriter final : public DdsWriter, private dds::DataWriterListener {
   int readers() const override { return readers_; }
   bool write(std::span<const uint8_t> data) override {
     RawMessage message{data, {}};
-    return writer_->write(&message);
+    return succeeded(writer_->write(&message));
   }
   bool reply(std::span<const uint8_t> data, const DdsRequest& request) override {
     {
@@ -90,7 +85,7 @@ class RawWriter final : public DdsWriter, private dds::DataWriterListener {
     RawMessage message{data, {}};
     rtps::WriteParams parameters;
     parameters.related_sample_identity(request);
-    return writer_->write(&message, parameters);
+    return succeeded(writer_->write(&message, parameters));
   }
 
  private:
@@ -148,7 +143,7 @@ class RawReader final : public DdsReader, private dds::DataReaderListener {
   void on_data_available(dds::DataReader* reader) override {
     RawMessage message;
     dds::SampleInfo info;
-    while (reader->take_next_sample(&message, &info) == ReturnCode_t::RETCODE_OK) {
+    while (succeeded(reader->take_next_sample(&message, &info))) {
       if (!info.valid_data) continue;
       const rtps::GUID_t& guid = info.sample_identity.writer_guid();
       DdsSample sample{message.own, {}, requester(info)};

@@ -1,8 +1,6 @@
 #pragma once
 // Writers and readers of encoded messages on DDS. A part of dds_node.h.
 
-#include <fastdds/rtps/common/Guid.h>
-
 #include <functional>
 #include <memory>
 
@@ -20,7 +18,7 @@ namespace gloam::bridge {
 inline constexpr const char* kLargePace = "gloam_large";
 
 /// An endpoint begins to exist, and ends.
-using EndpointEvent = std::function<void(const eprosima::fastrtps::rtps::GUID_t&)>;
+using EndpointEvent = std::function<void(const rtps::GUID_t&)>;
 struct WriterEvents {
   EndpointEvent on_begin, on_end;
   std::function<void()> on_match;  ///< readers came or went; may be empty
@@ -31,11 +29,9 @@ struct ReaderEvents {
 };
 
 /// Errors: DDS refuses it.
-Result<std::unique_ptr<DdsWriter>> open_writer(eprosima::fastdds::dds::Publisher& publisher,
-                                               eprosima::fastdds::dds::Topic& topic,
+Result<std::unique_ptr<DdsWriter>> open_writer(dds::Publisher& publisher, dds::Topic& topic,
                                                const DdsEndpoint& endpoint, WriterEvents events);
-Result<std::unique_ptr<DdsReader>> open_reader(eprosima::fastdds::dds::Subscriber& subscriber,
-                                               eprosima::fastdds::dds::Topic& topic,
+Result<std::unique_ptr<DdsReader>> open_reader(dds::Subscriber& subscriber, dds::Topic& topic,
                                                const DdsEndpoint& endpoint, ReaderEvents events);
 
 }  // namespace gloam::bridge

@@ -1,7 +1,5 @@
 #include "bridge/ros2/dds_node.h"
 
-#include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
-#include <fastrtps/utils/IPLocator.h>
 #include <fastdds/dds/domain/DomainParticipant.hpp>
 #include <fastdds/dds/domain/DomainParticipantFactory.hpp>
 #include <fastdds/dds/log/Log.hpp>
@@ -24,10 +22,6 @@
 
 namespace gloam::bridge {
 namespace {
-
-namespace dds = eprosima::fastdds::dds;
-namespace rtps = eprosima::fastrtps::rtps;
-using eprosima::fastrtps::types::ReturnCode_t;
 
 constexpr int32_t kBytesPerPeriod = 132'000;  // two of DDS's fragments, which are of 65,500 bytes
 constexpr uint64_t kPeriod = 2;               // [ms]
@@ -56,15 +50,14 @@ dds::DomainParticipantQos participant_qos(const DdsNodeOptions& options) {
   // No shared memory: of Fast DDS 2.9 a reader that is killed leaves its port locked for all, and
   // Fast DDS 3 does not know 2.9's names.
   if (options.network)
-    qos.transport().user_transports = {
-        std::make_shared<eprosima::fastdds::rtps::UDPv4TransportDescriptor>()};
+    qos.transport().user_transports = {std::make_shared<transport::UDPv4TransportDescriptor>()};
   else
     qos.transport().user_transports = {std::make_shared<LoopbackTransportDescriptor>()};
   // A picture sent at once would overflow its reader's socket, which holds 212,992 bytes by
   // default.
-  const auto pace = std::make_shared<eprosima::fastdds::rtps::FlowControllerDescriptor>();
+  const auto pace = std::make_shared<transport::FlowControllerDescriptor>();
   pace->name = kLargePace;
-  pace->scheduler = eprosima::fastdds::rtps::FlowControllerSchedulerPolicy::FIFO;
+  pace->scheduler = transport::FlowControllerSchedulerPolicy::FIFO;
   pace->max_bytes_per_period = kBytesPerPeriod;
   pace->period_ms = kPeriod;
   qos.flow_controllers().push_back(pace);
@@ -128,7 +121,7 @@ class DdsNode::Impl {
     const std::lock_guard lock(mutex_);
     if (!types_.contains(endpoint.type)) {
       dds::TypeSupport type(new RawType(endpoint.type));
-      if (type.register_type(participant_) != ReturnCode_t::RETCODE_OK)
+      if (!succeeded(type.register_type(participant_)))
         return Error{ErrorKind::kIo, "DDS refuses type " + endpoint.type};
       types_.emplace(endpoint.type, type);
     }

@@ -3,8 +3,6 @@
 // of encoded messages, and what rmw expects of their names, types, hashes and user data. The facts
 // of the wire are in rmw_fastrtps and rmw_dds_common.
 
-#include <fastdds/rtps/common/SampleIdentity.h>
-
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -13,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "bridge/ros2/dds_api.h"
 #include "gloam/result.h"
 #include "gloam/topics.h"
 
@@ -32,7 +31,7 @@ struct DdsEndpoint {
   bool is_large = false;  ///< sent by a thread of DDS's own, in pieces
 };
 
-using DdsRequest = eprosima::fastrtps::rtps::SampleIdentity;
+using DdsRequest = rtps::SampleIdentity;
 
 /// A message that came in. `data` lives as long as the callback.
 struct DdsSample {

@@ -1,9 +1,6 @@
 #include "bridge/ros2/loopback_transport.h"
 
 #include <arpa/inet.h>
-#include <fastdds/rtps/transport/ChainingTransport.h>
-#include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
-#include <fastrtps/utils/IPLocator.h>
 #include <ifaddrs.h>
 
 #include <set>
@@ -11,10 +8,6 @@
 
 namespace gloam::bridge {
 namespace {
-
-using eprosima::fastrtps::rtps::IPLocator;
-using eprosima::fastrtps::rtps::Locator_t;
-namespace transport = eprosima::fastdds::rtps;
 
 constexpr const char* kLoopback = "127.0.0.1";
 
@@ -40,30 +33,17 @@ std::set<std::string> own_addresses() {
   return addresses;
 }
 
-class LoopbackTransport final : public transport::ChainingTransport {
+class LoopbackTransport final : public ForwardingTransport {
  public:
-  using ChainingTransport::ChainingTransport;
+  using ForwardingTransport::ForwardingTransport;
 
-  transport::TransportDescriptorInterface* get_configuration() override {
-    return low_level_transport_->get_configuration();
-  }
-  bool transform_remote_locator(const Locator_t& remote, Locator_t& result) const override {
-    Locator_t here = remote;
-    if (IsLocatorSupported(remote) && own_addresses().contains(IPLocator::toIPv4string(remote)))
-      IPLocator::setIPv4(here, kLoopback);
-    return low_level_transport_->transform_remote_locator(here, result);
-  }
-  bool send(eprosima::fastrtps::rtps::SenderResource* sender,
-            const eprosima::fastrtps::rtps::octet* bytes, uint32_t size,
-            eprosima::fastrtps::rtps::LocatorsIterator* begin,
-            eprosima::fastrtps::rtps::LocatorsIterator* end,
-            const std::chrono::steady_clock::time_point& timeout) override {
-    return sender->send(bytes, size, begin, end, timeout);
-  }
-  void receive(transport::TransportReceiverInterface* next,
-               const eprosima::fastrtps::rtps::octet* bytes, uint32_t size, const Locator_t& local,
-               const Locator_t& remote) override {
-    next->OnDataReceived(bytes, size, local, remote);
+ private:
+  rtps::Locator_t changed(const rtps::Locator_t& remote) const override {
+    rtps::Locator_t here = remote;
+    if (IsLocatorSupported(remote) &&
+        own_addresses().contains(rtps::IPLocator::toIPv4string(remote)))
+      rtps::IPLocator::setIPv4(here, kLoopback);
+    return here;
   }
 };
 

@@ -3,17 +3,14 @@
 // machine that announce the addresses of its network cards, as all do by default. Fast DDS 2.9
 // would leave such addresses out (its pull request 3733).
 
-#include <fastdds/rtps/transport/ChainingTransportDescriptor.h>
-
-#include <memory>
+#include "bridge/ros2/dds_api.h"
 
 namespace gloam::bridge {
 
-class LoopbackTransportDescriptor final
-    : public eprosima::fastdds::rtps::ChainingTransportDescriptor {
+class LoopbackTransportDescriptor final : public transport::ChainingTransportDescriptor {
  public:
   LoopbackTransportDescriptor();
-  eprosima::fastdds::rtps::TransportInterface* create_transport() const override;
+  transport::TransportInterface* create_transport() const override;
 };
 
 }  // namespace gloam::bridge

@@ -6,7 +6,7 @@ namespace gloam::bridge {
 
 Result<std::unique_ptr<Bridge>> start_ros2(const BridgeContext&, const Ros2Options& options) {
   return Error{ErrorKind::kUsage, "this build has no bridge to ROS 2", options.loc,
-               "build it where libfastrtps-dev is installed: ./gloam setup"};
+               "./gloam setup installs Fast DDS and builds the bridge"};
 }
 
 }  // namespace gloam::bridge

@@ -2,12 +2,12 @@
 // RawType: the one DDS type of all messages. Its data are bytes that are encoded already, so that
 // Fast DDS only copies them.
 
-#include <fastdds/dds/topic/TopicDataType.hpp>
-
 #include <cstdint>
 #include <span>
 #include <string>
 #include <vector>
+
+#include "bridge/ros2/dds_api.h"
 
 namespace gloam::bridge {
 
@@ -17,17 +17,17 @@ struct RawMessage {
   std::vector<uint8_t> own;
 };
 
-class RawType final : public eprosima::fastdds::dds::TopicDataType {
+class RawType final : public DdsType {
  public:
-  /// `name`: that of DDS.
+  /// `name`: the type's name in DDS.
   explicit RawType(const std::string& name);
 
-  bool serialize(void* data, eprosima::fastrtps::rtps::SerializedPayload_t* payload) override;
-  bool deserialize(eprosima::fastrtps::rtps::SerializedPayload_t* payload, void* data) override;
-  std::function<uint32_t()> getSerializedSizeProvider(void* data) override;
-  void* createData() override { return new RawMessage; }
-  void deleteData(void* data) override { delete static_cast<RawMessage*>(data); }
-  bool getKey(void*, eprosima::fastrtps::rtps::InstanceHandle_t*, bool) override { return false; }
+ private:
+  void write(const void* message, rtps::SerializedPayload_t* payload) const override;
+  bool read(const rtps::SerializedPayload_t& payload, void* message) const override;
+  uint32_t size_of(const void* message) const override;
+  void* make_message() const override { return new RawMessage; }
+  void delete_message(void* message) const override { delete static_cast<RawMessage*>(message); }
 };
 
 }  // namespace gloam::bridge
