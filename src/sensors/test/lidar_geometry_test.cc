@@ -1,5 +1,6 @@
 // Where LiDAR points are: against closed forms.
 
+#include <algorithm>
 #include <cmath>
 
 #include "sensors/test/lidar_scene.h"
