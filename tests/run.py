@@ -409,6 +409,8 @@ def full(tally):
         "slow commands of documents": lambda t: python_tests(t, "tests/e2e/docs_test.py", "weather", GLOAM_TEST_FULL="1"),
         "slow tests of Python": slow_api_tests,
         "memory of Python under asan": sanitized_api_tests,
+        "limits of memory": lambda t: python_tests(t, "tests/e2e/memory_limit_test.py", GLOAM_TEST_FULL="1"),
+        "Debian 13": lambda t: python_tests(t, "tests/e2e/debian13.py", GLOAM_AS_BUILT=""),
         "recipes": lambda t: python_tests(t, "tests/e2e/recipes.py", GLOAM_AS_BUILT=""),
         "agreement with Mitsuba": lambda t: python_tests(t, "tests/e2e/mitsuba_scenes.py"),
         "Mitsuba's mutations": lambda t: python_tests(t, "tests/e2e/mitsuba_mutations.py"),

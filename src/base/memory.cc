@@ -100,6 +100,19 @@ void end_out_of_memory(const char* who) {
   ::_exit(1);
 }
 
+Error no_memory_for(const std::string& what) {
+  return {ErrorKind::kInput,
+          "out of memory for " + what,
+          {},
+          "give the process more, or lower the resolution or the size of the scene"};
+}
+
+// pthread_create reports EAGAIN.
+bool is_want_of_memory(const std::system_error& error) {
+  return error.code() == std::errc::resource_unavailable_try_again ||
+         error.code() == std::errc::not_enough_memory;
+}
+
 Status check_memory(uint64_t bytes, const std::string& what, const std::string& hint) {
   constexpr uint64_t kAlwaysThere = 16 << 20;  // not worth the look
   if (bytes <= kAlwaysThere) return {};

@@ -4,7 +4,9 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <new>
 #include <string>
+#include <system_error>
 
 #include "gloam/result.h"
 
@@ -23,6 +25,24 @@ MemoryRoom memory_room(const std::filesystem::path& root = "/");
 /// Ends the process: "out of memory" on stderr, exit code 1, for where no value can tell of it.
 /// `who`: "" or ", in MuJoCo". Takes none itself; may be called in a signal's handler.
 [[noreturn]] void end_out_of_memory(const char* who);
+
+/// Error (kInput): no memory for `what`.
+Error no_memory_for(const std::string& what);
+
+/// Is it a thread that found no room for its stack?
+bool is_want_of_memory(const std::system_error& error);
+
+/// Calls f(), which returns a Result or Status; want of memory in it becomes no_memory_for(what).
+template <class F>
+auto or_no_memory(const char* what, F&& f) -> decltype(f()) {
+  try {
+    return f();
+  } catch (const std::bad_alloc&) {
+  } catch (const std::system_error& error) {
+    if (!is_want_of_memory(error)) throw;
+  }
+  return no_memory_for(what);
+}
 
 /// Error (kInput) naming the need and the room if `bytes` are more than there is room for. `what`
 /// needs them; `hint`: how to need less.

@@ -10,6 +10,8 @@ namespace gloam {
 
 /// Calls f(begin, end) over disjoint ranges that cover [0, n), on several threads; returns when all
 /// are done. `grain` = smallest range worth a task. f must not depend on how the range is split.
+/// The first exception that leaves f is thrown to the caller; ranges not begun by then are left
+/// out.
 void parallel_for_range(const char* name, int64_t n, int64_t grain,
                         const std::function<void(int64_t begin, int64_t end)>& f);
 

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "world/model_memory.h"
 #include "world/world.h"
 
 namespace gloam {
@@ -144,8 +145,7 @@ Result<Quadruped> find_quadruped(const mjModel& m, const RobotInstance& robot) {
   }
   if (out.base_body < 0) return not_a_quadruped("it has no free joint");
 
-  DataPtr data(mj_makeData(&m));
-  if (!data) return not_a_quadruped("out of memory");
+  const DataPtr data = make_data(m);
   mj_kinematics(&m, data.get());
   mj_comPos(&m, data.get());
   const mjData& d = *data;

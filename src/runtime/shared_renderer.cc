@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "base/log.h"
+#include "base/memory.h"
 
 namespace gloam {
 namespace {
@@ -19,12 +20,14 @@ void report_left_out(const std::vector<Error>& left_out) {
 
 Result<std::shared_ptr<SharedRenderer>> SharedRenderer::create(
     std::shared_ptr<const CompiledWorld> world) {
-  auto shared = std::make_shared<SharedRenderer>();
-  GLOAM_TRY(shared->description, describe_for_rendering(*world));
-  report_left_out(shared->description.unsupported);
-  GLOAM_TRY(shared->renderer, make_renderer(shared->description, world->scene.render.device));
-  shared->world = std::move(world);
-  return shared;
+  return or_no_memory("drawing the scene", [&]() -> Result<std::shared_ptr<SharedRenderer>> {
+    auto shared = std::make_shared<SharedRenderer>();
+    GLOAM_TRY(shared->description, describe_for_rendering(*world));
+    report_left_out(shared->description.unsupported);
+    GLOAM_TRY(shared->renderer, make_renderer(shared->description, world->scene.render.device));
+    shared->world = std::move(world);
+    return shared;
+  });
 }
 
 Result<std::shared_ptr<SharedRenderer>> SharedRenderers::of(

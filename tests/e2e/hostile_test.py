@@ -320,20 +320,6 @@ class Texts(ProgramTest):
         self.assertIn(r"\x1b]0;owned\x07\u009b31m", self.gloam("info", "key.toml", expect=1).stderr)
 
 
-class Memory(ProgramTest):
-    def test_that_ends_while_a_scene_is_read_or_drawn(self):
-        scene = ROOT / "examples" / "demo.toml"
-        for kilobytes in (300_000, 360_000, 409_600, 480_000, 560_000):
-            for command in (["info", scene], ["render", scene, "--resolution", "32x24", "--spp", "1", "--out", f"out{kilobytes}"]):
-                with self.subTest(command[0], kilobytes=kilobytes):
-                    limit = lambda size=kilobytes << 10: resource.setrlimit(resource.RLIMIT_AS, (size, size))  # noqa: E731
-                    result = subprocess.run([str(PROGRAM), "-q", *map(str, command)], cwd=self.folder, text=True, capture_output=True, timeout=SECONDS,
-                                            preexec_fn=limit, env={**os.environ, "GLOAM_CACHE": str(self.folder / f"cache{kilobytes}{command[0]}")})
-                    self.assertIn(result.returncode, (0, 1), result.stderr)
-                    if result.returncode == 1:
-                        self.assertIn("memory", [line for line in result.stderr.splitlines() if "error" in line][-1])
-
-
 class Roots(ProgramTest):
     GLTF = {"asset": {"version": "2.0"}, "buffers": [{"uri": "../outside.bin", "byteLength": 36}], "bufferViews": [{"buffer": 0, "byteLength": 36}],
             "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3"}],

@@ -6,6 +6,7 @@
 
 #include "base/text.h"
 #include "sim/commands/command_check.h"
+#include "world/model_memory.h"
 #include "world/model_names.h"
 #include "world/world_robots.h"
 
@@ -21,8 +22,7 @@ constexpr RobotMetricFactory kFamilies[] = {
 
 // Reach of the robot's colliders, sideways from its base [m].
 double reach_of(const mjModel& m, const MetricRobot& robot) {
-  const DataPtr data(mj_makeData(&m));
-  if (data == nullptr) return 0;
+  const DataPtr data = make_data(m);
   mj_kinematics(&m, data.get());
   double reach = 0;
   for (int g = 0; g < m.ngeom; ++g) {

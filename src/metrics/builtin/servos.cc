@@ -9,6 +9,7 @@
 #include "control/robot_joints.h"
 #include "metrics/builtin/robot_metric.h"
 #include "sim/state/initial_state.h"
+#include "world/model_memory.h"
 
 namespace gloam {
 namespace {
@@ -35,8 +36,7 @@ std::vector<HeldJoint> held_joints(const MetricRobot& robot, int joint_type) {
   const ControllerOptions& options = robot.instance->options.controller;
   if (options.type != "joint_position") return {};
   const std::vector<DrivenJoint> joints = driven_joints(m, *robot.instance);
-  const DataPtr data(mj_makeData(&m));
-  if (data == nullptr) return {};
+  const DataPtr data = make_data(m);
   reset_to_initial_state(*robot.world, m, *data);
   std::vector<HeldJoint> held;
   for (size_t i = 0; i < joints.size(); ++i) {

@@ -1,5 +1,7 @@
 #include "places/writer/height_field_spec.h"
 
+#include "places/writer/spec_edit.h"
+
 #include <algorithm>
 
 namespace gloam {
@@ -20,18 +22,18 @@ mjsGeom* add_height_field(const std::string& name, const HeightField& field, mjS
   const double half_x = grid.step[0] * (grid.columns - 1) / 2;
   const double half_y = grid.step[1] * (grid.rows - 1) / 2;
 
-  mjsHField* hfield = mjs_addHField(spec);
-  mjs_setName(hfield->element, name.c_str());
+  mjsHField* hfield = edit(mjs_addHField, spec);
+  edit(mjs_setName, hfield->element, name.c_str());
   hfield->nrow = grid.rows;
   hfield->ncol = grid.columns;
   const double size[4] = {half_x, half_y, std::max(range, kFlat), field.base};
   std::copy(size, size + 4, hfield->size);
-  mjs_setFloat(hfield->userdata, share.data(), static_cast<int>(share.size()));
+  edit(mjs_setFloat, hfield->userdata, share.data(), static_cast<int>(share.size()));
 
-  mjsGeom* geom = mjs_addGeom(mjs_findBody(spec, "world"), nullptr);
-  mjs_setName(geom->element, name.c_str());
+  mjsGeom* geom = edit(mjs_addGeom, mjs_findBody(spec, "world"), nullptr);
+  edit(mjs_setName, geom->element, name.c_str());
   geom->type = mjGEOM_HFIELD;
-  mjs_setString(geom->hfieldname, name.c_str());
+  edit(mjs_setString, geom->hfieldname, name.c_str());
   const double middle[3] = {grid.low[0] + half_x, grid.low[1] + half_y, base};
   std::copy(middle, middle + 3, geom->pos);
   return geom;

@@ -9,6 +9,7 @@
 
 #include "base/check.h"
 #include "places/writer/height_field_spec.h"
+#include "places/writer/spec_edit.h"
 #include "places/writer/spec_geom.h"
 
 namespace gloam {
@@ -87,23 +88,24 @@ class PlaceWriter {
   }
 
   static void name(mjsElement* element, const std::string& text) {
-    mjs_setName(element, text.c_str());
+    edit(mjs_setName, element, text.c_str());
   }
 
   void add_material(const Look& look) {
-    mjsMaterial* material = mjs_addMaterial(spec_, nullptr);
+    mjsMaterial* material = edit(mjs_addMaterial, spec_, nullptr);
     name(material->element, look.name);
     if (!look.picture.empty()) {
       const Image8& image = look.picture.image();
-      mjsTexture* texture = mjs_addTexture(spec_, nullptr);
+      mjsTexture* texture = edit(mjs_addTexture, spec_, nullptr);
       name(texture->element, look.name);
       texture->type = mjTEXTURE_2D;
       texture->colorspace = mjCOLORSPACE_SRGB;
       texture->width = image.width;
       texture->height = image.height;
       texture->nchannel = image.channels;
-      mjs_setBuffer(texture->data, image.texels.data(), static_cast<int>(image.texels.size()));
-      mjs_setInStringVec(material->textures, mjTEXROLE_RGB, look.name.c_str());
+      edit(mjs_setBuffer, texture->data, image.texels.data(),
+           static_cast<int>(image.texels.size()));
+      edit(mjs_setInStringVec, material->textures, mjTEXROLE_RGB, look.name.c_str());
     }
     const double rgba[4] = {look.color.x, look.color.y, look.color.z, look.opacity};
     for (int i = 0; i < 4; ++i) material->rgba[i] = static_cast<float>(rgba[i]);
@@ -131,21 +133,21 @@ class PlaceWriter {
   }
 
   void add_mesh(const std::string& mesh_name, const TriangleMesh& from) {
-    mjsMesh* mesh = mjs_addMesh(spec_, nullptr);
+    mjsMesh* mesh = edit(mjs_addMesh, spec_, nullptr);
     name(mesh->element, mesh_name);
     mesh->inertia = mjMESH_INERTIA_SHELL;  // a visual has no mass, and may be open
     const auto count = static_cast<int>(from.positions.size());
-    mjs_setFloat(mesh->uservert, &from.positions[0].x, 3 * count);
-    mjs_setFloat(mesh->usernormal, &from.normals[0].x, 3 * count);
+    edit(mjs_setFloat, mesh->uservert, &from.positions[0].x, 3 * count);
+    edit(mjs_setFloat, mesh->usernormal, &from.normals[0].x, 3 * count);
     const std::vector<int> faces(from.indices.begin(), from.indices.end());
     const auto corners = static_cast<int>(faces.size());
-    mjs_setInt(mesh->userface, faces.data(), corners);
-    mjs_setInt(mesh->userfacenormal, faces.data(), corners);
+    edit(mjs_setInt, mesh->userface, faces.data(), corners);
+    edit(mjs_setInt, mesh->userfacenormal, faces.data(), corners);
     if (from.uvs.empty()) return;
     std::vector<float> uvs;
     for (const Vec2f uv : from.uvs) uvs.insert(uvs.end(), {uv.x, 1 - uv.y});
-    mjs_setFloat(mesh->usertexcoord, uvs.data(), static_cast<int>(uvs.size()));
-    mjs_setInt(mesh->userfacetexcoord, faces.data(), corners);
+    edit(mjs_setFloat, mesh->usertexcoord, uvs.data(), static_cast<int>(uvs.size()));
+    edit(mjs_setInt, mesh->userfacetexcoord, faces.data(), corners);
   }
 
   void add_placement(const Placement& placement) {
@@ -156,7 +158,7 @@ class PlaceWriter {
       mjsBody* parent = part.parent < 0 || placement.driven
                             ? mjs_findBody(spec_, "world")
                             : bodies[static_cast<size_t>(part.parent)];
-      mjsBody* body = mjs_addBody(parent, nullptr);
+      mjsBody* body = edit(mjs_addBody, parent, nullptr);
       bodies.push_back(body);
       const std::string body_name =
           part.parent < 0 ? placement.name : placement.name + "/" + part.name;
@@ -164,7 +166,7 @@ class PlaceWriter {
       body->mocap = placement.driven ? 1 : 0;
       if (part.parent < 0 || placement.driven) {
         write_pose(placement.X_WP, body->pos, body->quat);
-        if (placement.loose) name(mjs_addFreeJoint(body)->element, body_name);
+        if (placement.loose) name(edit(mjs_addFreeJoint, body)->element, body_name);
       } else {
         write_pose({part.p_P, {}}, body->pos, body->quat);
       }
@@ -178,7 +180,7 @@ class PlaceWriter {
   // Stands at `initial` in the reference pose, and counts from where the joint is at zero.
   void add_joint(const PropJoint& from, const std::string& body_name, const Vec3& p_P,
                  mjsBody* body) {
-    mjsJoint* joint = mjs_addJoint(body, nullptr);
+    mjsJoint* joint = edit(mjs_addJoint, body, nullptr);
     name(joint->element, body_name);
     joint->type = from.slides ? mjJNT_SLIDE : mjJNT_HINGE;
     const double axis[3] = {from.axis.x, from.axis.y, from.axis.z};
@@ -205,7 +207,7 @@ class PlaceWriter {
                    mjsBody* body) {
     const std::vector<PropVisual>& visuals = place_.prop(placement.prop).parts[part].visuals;
     for (size_t v = 0; v < visuals.size(); ++v) {
-      mjsGeom* geom = mjs_addGeom(body, nullptr);
+      mjsGeom* geom = edit(mjs_addGeom, body, nullptr);
       name(geom->element, body_name + "/" + visuals[v].name);
       show(geom, mesh_of(placement.prop, part, v), visuals[v].material);
     }
@@ -213,20 +215,20 @@ class PlaceWriter {
 
   static void show(mjsGeom* geom, const std::string& mesh, const std::string& material) {
     geom->type = mjGEOM_MESH;
-    mjs_setString(geom->meshname, mesh.c_str());
-    mjs_setString(geom->material, material.c_str());
+    edit(mjs_setString, geom->meshname, mesh.c_str());
+    edit(mjs_setString, geom->material, material.c_str());
     geom->contype = geom->conaffinity = 0;
     geom->group = kVisualGroup;
     geom->mass = 0;
   }
 
   void add_scatter(const Scatter& scatter) {
-    mjsBody* body = mjs_addBody(mjs_findBody(spec_, "world"), nullptr);
+    mjsBody* body = edit(mjs_addBody, mjs_findBody(spec_, "world"), nullptr);
     name(body->element, scatter.name);
     const std::vector<PropVisual>& visuals = place_.prop(scatter.prop).body().visuals;
     for (const Pose& X_WP : scatter.poses)
       for (size_t v = 0; v < visuals.size(); ++v) {
-        mjsGeom* geom = mjs_addGeom(body, nullptr);
+        mjsGeom* geom = edit(mjs_addGeom, body, nullptr);
         show(geom, mesh_of(scatter.prop, 0, v), visuals[v].material);
         write_pose(X_WP, geom->pos, geom->quat);
       }
@@ -237,12 +239,13 @@ class PlaceWriter {
     std::string& known = hulls_[{prop, part, number}];
     if (!known.empty()) return known;
     known = fmt::format("{}.{}/{}.hull_{}", place_.prop(prop).label, prop, part, number + 1);
-    mjsMesh* mesh = mjs_addMesh(spec_, nullptr);
+    mjsMesh* mesh = edit(mjs_addMesh, spec_, nullptr);
     name(mesh->element, known);
     mesh->inertia = mjMESH_INERTIA_CONVEX;
-    mjs_setFloat(mesh->uservert, &hull.positions[0].x, 3 * static_cast<int>(hull.positions.size()));
+    edit(mjs_setFloat, mesh->uservert, &hull.positions[0].x,
+         3 * static_cast<int>(hull.positions.size()));
     const std::vector<int> faces(hull.indices.begin(), hull.indices.end());
-    mjs_setInt(mesh->userface, faces.data(), static_cast<int>(faces.size()));
+    edit(mjs_setInt, mesh->userface, faces.data(), static_cast<int>(faces.size()));
     return known;
   }
 
@@ -257,8 +260,8 @@ class PlaceWriter {
       geom->type = type_of(c.shape);
       const double size[3] = {c.size.x, c.size.y, c.size.z};
       if (c.shape == ColliderShape::kHull)
-        mjs_setString(geom->meshname,
-                      hull_of(prop, index, static_cast<size_t>(number) - 1, c.hull).c_str());
+        edit(mjs_setString, geom->meshname,
+             hull_of(prop, index, static_cast<size_t>(number) - 1, c.hull).c_str());
       else
         std::copy(size, size + 3, geom->size);
       write_pose(c.X_PG, geom->pos, geom->quat);
@@ -269,9 +272,9 @@ class PlaceWriter {
 
   // A leaf and its frame touch by design.
   void exclude(mjsBody* a, mjsBody* b) {
-    mjsExclude* exclude = mjs_addExclude(spec_);
-    mjs_setString(exclude->bodyname1, mjs_getString(mjs_getName(a->element)));
-    mjs_setString(exclude->bodyname2, mjs_getString(mjs_getName(b->element)));
+    mjsExclude* exclude = edit(mjs_addExclude, spec_);
+    edit(mjs_setString, exclude->bodyname1, mjs_getString(mjs_getName(a->element)));
+    edit(mjs_setString, exclude->bodyname2, mjs_getString(mjs_getName(b->element)));
   }
 
   const Place& place_;

@@ -1,5 +1,7 @@
 #include "places/writer/spec_geom.h"
 
+#include "places/writer/spec_edit.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -23,8 +25,8 @@ void write_friction(const std::optional<Vec3>& friction, mjsGeom* geom) {
 }
 
 mjsGeom* add_collider_geom(mjsBody* body, const std::string& name) {
-  mjsGeom* geom = mjs_addGeom(body, nullptr);
-  mjs_setName(geom->element, name.c_str());
+  mjsGeom* geom = edit(mjs_addGeom, body, nullptr);
+  edit(mjs_setName, geom->element, name.c_str());
   geom->group = kColliderGroup;
   constexpr float kBlue[4] = {0.3f, 0.6f, 0.9f, 0.3f};
   std::copy(kBlue, kBlue + 4, geom->rgba);

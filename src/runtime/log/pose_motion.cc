@@ -6,9 +6,11 @@
 #include <cmath>
 #include <utility>
 
+#include "base/memory.h"
 #include "ros/codec.h"
 #include "runtime/log/run_text.h"
 #include "sim/state/state_transfer.h"
+#include "world/model_memory.h"
 
 namespace gloam {
 namespace {
@@ -24,8 +26,8 @@ PoseMotion::PoseMotion(const McapReader& log, const LoggedRuns::Run& run,
       from_(run.record.chapters.front().world),
       to_(std::move(to)),
       same_(*from_, *to_),
-      data_(mj_makeData(from_->model.get())),
-      after_data_(mj_makeData(from_->model.get())),
+      data_(make_data(*from_->model)),
+      after_data_(make_data(*from_->model)),
       step_time_(run.record.timestep.value_or(from_->model->opt.timestep)),
       velocity_(static_cast<size_t>(from_->model->nv)) {}
 
@@ -35,11 +37,11 @@ Result<std::unique_ptr<PoseMotion>> PoseMotion::create(const McapReader& log,
   if (run.record.chapters.size() != 1)
     return Error{ErrorKind::kUnsupported,
                  "the run was recompiled on its way: its motion cannot be followed in one World"};
-  std::unique_ptr<PoseMotion> made(new PoseMotion(log, run, std::move(to)));
-  if (made->data_ == nullptr || made->after_data_ == nullptr)
-    return Error{ErrorKind::kIo, "out of memory"};
-  GLOAM_TRY_STATUS(made->look_at(0));
-  return made;
+  return or_no_memory("the poses of the run", [&]() -> Result<std::unique_ptr<PoseMotion>> {
+    std::unique_ptr<PoseMotion> made(new PoseMotion(log, run, std::move(to)));
+    GLOAM_TRY_STATUS(made->look_at(0));
+    return made;
+  });
 }
 
 // The next state of the run; nothing at its end.

@@ -10,6 +10,7 @@
 #include <exception>
 #include <mutex>
 
+#include "base/abort_guard.h"
 #include "base/check.h"
 #include "base/log.h"
 #include "base/memory.h"
@@ -50,17 +51,6 @@ void catch_abort() {
   struct sigaction action = {};
   action.sa_handler = on_abort;
   ::sigaction(SIGABRT, &action, &previous_abort);
-}
-
-// No caller is known above this frame, so that an unwinder ends its search here.
-[[gnu::noinline]] void call_as_outermost(void (*call)(void*), void* context) {
-#if defined(__x86_64__)
-  asm volatile(".cfi_undefined rip");
-#elif defined(__aarch64__)
-  asm volatile(".cfi_undefined x30");
-#endif
-  call(context);
-  asm volatile("" ::: "memory");  // no tail call
 }
 
 void take_message(const mjLogMessage* message) {
@@ -126,6 +116,9 @@ void install_mujoco_handler() {
     mju_setLogConfig(config);
     mju_setLogHandler(handle_message);
     catch_abort();
+    // Made at the first call, which must not be one of the compiler's threads when memory has
+    // ended: MuJoCo does not check that it got any.
+    mj_getCache();
   });
 }
 

@@ -8,6 +8,7 @@
 #include <set>
 
 #include "base/check.h"
+#include "places/writer/spec_edit.h"
 #include "scene/mjcf/spec_kinds.h"
 #include "scene/mjcf/spec_values.h"
 #include "scene/mjcf/specimen.h"
@@ -137,31 +138,34 @@ bool copy_changed(const SpecObject& from, const std::vector<SpecObject>& others,
     return true;
   }
   if (field.type == SpecType::kString) {
-    mjs_setString(pointer_at<mjString>(to, field),
-                  mjs_getString(pointer_at<mjString>(from, field)));
+    edit(mjs_setString, pointer_at<mjString>(to, field),
+         mjs_getString(pointer_at<mjString>(from, field)));
   } else if (field.type == SpecType::kStrings) {
     const auto* source = pointer_at<mjStringVec>(from, field);
     auto* dest = pointer_at<mjStringVec>(to, field);
     for (int i = 0; mjs_getInStringVec(source, i) != nullptr; ++i) {
       if (mjs_getInStringVec(dest, i) == nullptr) {
-        mjs_appendString(dest, mjs_getInStringVec(source, i));
+        edit(mjs_appendString, dest, mjs_getInStringVec(source, i));
       } else {
-        mjs_setInStringVec(dest, i, mjs_getInStringVec(source, i));
+        edit(mjs_setInStringVec, dest, i, mjs_getInStringVec(source, i));
       }
     }
   } else if (field.type == SpecType::kInts) {
     const mjIntVec& source = *pointer_at<mjIntVec>(from, field);
-    mjs_setInt(pointer_at<mjIntVec>(to, field), source.data(), static_cast<int>(source.size()));
+    edit(mjs_setInt, pointer_at<mjIntVec>(to, field), source.data(),
+         static_cast<int>(source.size()));
   } else if (field.type == SpecType::kFloats) {
     const mjFloatVec& source = *pointer_at<mjFloatVec>(from, field);
-    mjs_setFloat(pointer_at<mjFloatVec>(to, field), source.data(), static_cast<int>(source.size()));
+    edit(mjs_setFloat, pointer_at<mjFloatVec>(to, field), source.data(),
+         static_cast<int>(source.size()));
   } else if (field.type == SpecType::kDoubles) {
     const mjDoubleVec& source = *pointer_at<mjDoubleVec>(from, field);
-    mjs_setDouble(pointer_at<mjDoubleVec>(to, field), source.data(),
-                  static_cast<int>(source.size()));
+    edit(mjs_setDouble, pointer_at<mjDoubleVec>(to, field), source.data(),
+         static_cast<int>(source.size()));
   } else if (field.type == SpecType::kBytes) {
     const mjByteVec& source = *pointer_at<mjByteVec>(from, field);
-    mjs_setBuffer(pointer_at<mjByteVec>(to, field), source.data(), static_cast<int>(source.size()));
+    edit(mjs_setBuffer, pointer_at<mjByteVec>(to, field), source.data(),
+         static_cast<int>(source.size()));
   } else {
     return false;  // lists of lists: skins' bones
   }
@@ -209,7 +213,7 @@ Result<AttributeValue> AttributeValue::read(const MjcfElement& element,
 Status AttributeValue::set(mjSpec* spec, mjsElement* target) const {
   const Learned& l = *learned_;
   if (l.attribute->name == "name" && target != nullptr) {
-    if (mjs_setName(target, l.value.c_str()) == 0) return {};
+    if (edit(mjs_setName, target, l.value.c_str()) == 0) return {};
     return Error{ErrorKind::kInput, fmt::format("the name '{:.60}' is taken", l.value)};
   }
   const std::vector<SpecObject> to = objects_of(spec, target);

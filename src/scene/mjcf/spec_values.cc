@@ -7,6 +7,7 @@
 #include <map>
 #include <optional>
 
+#include "places/writer/spec_edit.h"
 #include "scene/mjcf/node.h"
 
 namespace gloam {
@@ -148,15 +149,18 @@ Status set_spec_numbers(const SpecObject& object, const SpecField& field, std::s
   } else if (field.type == SpecType::kDouble && real) {
     done = fill(static_cast<double*>(place), *real);
   } else if (field.type == SpecType::kInts && whole) {
-    mjs_setInt(*static_cast<mjIntVec**>(place), whole->data(), static_cast<int>(whole->size()));
+    edit(mjs_setInt, *static_cast<mjIntVec**>(place), whole->data(),
+         static_cast<int>(whole->size()));
     done = true;
   } else if (field.type == SpecType::kBytes && whole &&
              std::ranges::all_of(*whole, [](int value) { return value >= 0 && value <= 255; })) {
     const std::vector<uint8_t> bytes(whole->begin(), whole->end());
-    mjs_setBuffer(*static_cast<mjByteVec**>(place), bytes.data(), static_cast<int>(bytes.size()));
+    edit(mjs_setBuffer, *static_cast<mjByteVec**>(place), bytes.data(),
+         static_cast<int>(bytes.size()));
     done = true;
   } else if (field.type == SpecType::kDoubles && real) {
-    mjs_setDouble(*static_cast<mjDoubleVec**>(place), real->data(), static_cast<int>(real->size()));
+    edit(mjs_setDouble, *static_cast<mjDoubleVec**>(place), real->data(),
+         static_cast<int>(real->size()));
     done = true;
   }
   if (done) return {};

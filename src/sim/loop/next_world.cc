@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "base/memory.h"
 #include "sim/loop/scene_schedule.h"
 
 namespace gloam {
@@ -13,7 +14,9 @@ Result<NextWorld> make_next_world(const std::shared_ptr<const CompiledWorld>& wo
   const Rational step_time = exact_rational(timestep.value_or(double{world->model->opt.timestep}));
   NextWorld next;
   GLOAM_TRY(next.scene_commands, scene_schedule(*world, step_time));
-  GLOAM_TRY(next.stepper, Stepper::create(world, seed, timestep, make_data));
+  GLOAM_TRY(next.stepper, or_no_memory("the simulation", [&] {
+              return Stepper::create(world, seed, timestep, make_data);
+            }));
   for (RobotController& controller : controllers) {
     GLOAM_TRY(ControllerSlot slot, ControllerSlot::make(*world, std::move(controller), step_time));
     next.controllers.push_back(std::move(slot));

@@ -4,9 +4,11 @@
 
 #include <algorithm>
 #include <limits>
+#include <new>
 #include <utility>
 
 #include "base/check.h"
+#include "base/memory.h"
 #include "sim/commands/command_check.h"
 #include "sim/loop/checkpoint.h"
 
@@ -171,6 +173,14 @@ void SimLoop::run_controllers() {
 }
 
 bool SimLoop::advance() {
+  try {
+    return take_step();
+  } catch (const std::bad_alloc&) {
+    return stepper_->fail(no_memory_for("the next step"));
+  }
+}
+
+bool SimLoop::take_step() {
   if (stepper_->failed()) return false;
   if (stepper_->follows()) return stepper_->step();
   if (apply_commands()) {

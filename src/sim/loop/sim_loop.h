@@ -75,6 +75,7 @@ class SimLoop {
 
  private:
   void apply(const Command& command);
+  bool take_step();
   bool apply_commands();
   void run_controllers();
   void run_hook();

@@ -13,6 +13,7 @@
 #include "sim/state/initial_state.h"
 #include "sim/state/state_layout.h"
 #include "sim/state/state_transfer.h"
+#include "world/model_memory.h"
 
 namespace gloam {
 namespace {
@@ -54,10 +55,7 @@ Status Stepper::make_memory(const DataMaker& make_data) {
   data_is_given_ = static_cast<bool>(make_data);
   if (!data_is_given_) {
     take_model(*world_->model);
-    const mjModel* model = &model_;
-    mjData* data = nullptr;
-    GLOAM_TRY_STATUS(guarded([&] { data = mj_makeData(model); }));
-    data_ = {data, DataDeleter()};
+    data_ = gloam::make_data(model_);
     return {};
   }
   GLOAM_TRY_STATUS(own_all());

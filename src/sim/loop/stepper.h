@@ -59,6 +59,8 @@ class Stepper {
 
   bool failed() const { return failed_; }
   const Error& error() const { return error_; }
+  /// Ends the run with this error, at its last good state. Returns false.
+  bool fail(Error error);
 
   /// The present instant; made once, however often it is asked for. Allocates only when readers
   /// hold the whole pool.
@@ -85,7 +87,6 @@ class Stepper {
 
  private:
   Stepper() = default;
-  bool fail(Error error);
   void restore_last_good_state();
   bool stand_at_state();
   void change_live(const SetLiveField& change);

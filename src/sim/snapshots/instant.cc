@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "base/memory.h"
 #include "scene/files/mujoco_guard.h"
 #include "sim/commands/live_fields.h"
 #include "sim/commands/model_fields.h"
@@ -14,6 +15,7 @@
 #include "sim/loop/step_schedule.h"
 #include "sim/loop/stepper.h"
 #include "sim/snapshots/snapshot.h"
+#include "world/model_memory.h"
 
 namespace gloam {
 namespace {
@@ -31,10 +33,12 @@ struct Instant::Solved {
   std::optional<WindOnBodies> wind;  // wind of steps as long as wind_timestep, if it blows
   std::optional<AirDrag> drag;       // none: MuJoCo's own
   double wind_timestep = 0;
-  bool good = false;  // the last forward pass was
+  std::vector<double> others;  // forces from outside but the drag [N, N m], (nv)
+  bool good = false;           // the last forward pass was
 
-  Status begin(const SnapshotData& in);
+  void begin(const SnapshotData& in);
   Status follow_live_fields(const SnapshotData& in);
+  void make_wind(const SnapshotData& in);
   void blow(const SnapshotData& in);
   void add_drag();
 
@@ -54,33 +58,28 @@ struct Instant::Solved {
 };
 
 // Room for instants of another World than before.
-Status Instant::Solved::begin(const SnapshotData& in) {
-  if (world == in.world) return {};
-  world = in.world;
+void Instant::Solved::begin(const SnapshotData& in) {
+  if (world == in.world) return;
+  world.reset();  // until all of the new one is there
   own_model.reset();
   scratch.reset();
   live_serial = 0;
   wind.reset();
   drag.reset();
-  model = *world->model;
-  if (world->wind.blows() && !has_own_drag(model)) drag.emplace(model);
-  mjData* made = nullptr;
-  GLOAM_TRY_STATUS(guarded([&] { made = mj_makeData(world->model.get()); }));
-  data.reset(made);
-  return {};
+  model = *in.world->model;
+  if (in.world->wind.blows() && !has_own_drag(model)) drag.emplace(model);
+  others.resize(static_cast<size_t>(model.nv));
+  data = make_data(*in.world->model);
+  world = in.world;
 }
 
 Status Instant::Solved::follow_live_fields(const SnapshotData& in) {
   const uint64_t serial = in.live != nullptr ? in.live->serial : 0;
   if (serial == live_serial) return {};
+  if (own_model == nullptr) own_model = copy_model(*world->model);
   mjModel* copy = own_model.get();
-  GLOAM_TRY_STATUS(guarded([&] { copy = mj_copyModel(copy, world->model.get()); }));
-  if (own_model == nullptr) own_model.reset(copy);
-  if (scratch == nullptr) {
-    mjData* made = nullptr;
-    GLOAM_TRY_STATUS(guarded([&] { made = mj_makeData(copy); }));
-    scratch.reset(made);
-  }
+  GLOAM_TRY_STATUS(guarded([&] { mj_copyModel(copy, world->model.get()); }));
+  if (scratch == nullptr) scratch = make_data(*copy);
   for (int f = 0; in.live != nullptr && f < kLiveFieldCount; ++f) {
     const std::vector<float>& values = in.live->values[static_cast<size_t>(f)];
     if (values.empty()) continue;
@@ -93,23 +92,26 @@ Status Instant::Solved::follow_live_fields(const SnapshotData& in) {
   return {};
 }
 
+// Outside of MuJoCo's guard, since it allocates.
+void Instant::Solved::make_wind(const SnapshotData& in) {
+  if (!world->wind.blows() || (wind && wind_timestep == in.timestep)) return;
+  wind.emplace(*world, exact_rational(in.timestep));
+  wind_timestep = in.timestep;
+}
+
 // As Stepper::blow().
 void Instant::Solved::blow(const SnapshotData& in) {
   const auto field = static_cast<size_t>(LiveFieldId::kWind);
   if (!world->wind.blows()) return;
   if (!drag) give_air(&model.opt);
   if (in.live != nullptr && !in.live->values[field].empty()) return;
-  if (!wind || wind_timestep != in.timestep) {
-    wind.emplace(*world, exact_rational(in.timestep));
-    wind_timestep = in.timestep;
-  }
   wind->blow(in.step, data->qpos, &model.opt);
 }
 
 // Accelerations again, with the drag of the wind among the forces from outside.
 void Instant::Solved::add_drag() {
   if (!drag) return;
-  const std::vector<double> others(data->qfrc_applied, data->qfrc_applied + model.nv);
+  std::copy_n(data->qfrc_applied, model.nv, others.begin());
   drag->push(model, *data);
   mj_forwardSkip(&model, data.get(), mjSTAGE_VEL, 0);
   std::copy(others.begin(), others.end(), data->qfrc_applied);
@@ -124,8 +126,11 @@ Status Instant::solve(const Snapshot& snapshot) {
   const SnapshotData& in = snapshot.data();
   Solved& s = *solved_;
   s.good = false;
-  GLOAM_TRY_STATUS(s.begin(in));
-  GLOAM_TRY_STATUS(s.follow_live_fields(in));
+  GLOAM_TRY_STATUS(or_no_memory("the instant", [&]() -> Status {
+    s.begin(in);
+    s.make_wind(in);
+    return s.follow_live_fields(in);
+  }));
   s.model.opt.timestep = in.timestep;
   s.model.opt.enableflags &= ~mjENBL_SLEEP;  // sleeping bodies would be left out
   const mjModel* model = &s.model;

@@ -3,11 +3,13 @@
 #include <algorithm>
 
 #include "base/check.h"
+#include "base/memory.h"
 #include "scene/files/mujoco_guard.h"
 #include "sim/commands/live_fields.h"
 #include "sim/effects/surface_vertices.h"
 #include "sim/snapshots/skinning.h"
 #include "sim/state/state_layout.h"
+#include "world/model_memory.h"
 #include "world/view/render_origin.h"
 
 namespace gloam {
@@ -20,26 +22,22 @@ void assign(const mjtNum* values, mjtSize n, std::vector<double>& out) {
 }  // namespace
 
 Result<std::unique_ptr<PoseSolver>> PoseSolver::create(std::shared_ptr<const CompiledWorld> world) {
-  std::unique_ptr<PoseSolver> solver(new PoseSolver);
-  solver->world_ = std::move(world);
-  solver->layout_ = deformable_layout(*solver->world_->model);
-  const bool sleeps = (solver->model().opt.enableflags & mjENBL_SLEEP) != 0;
-  if (sleeps || !is_zero(solver->world_->render_origin)) GLOAM_TRY_STATUS(solver->own_the_model());
-  const mjModel* model = &solver->model();
-  mjData* data = nullptr;
-  GLOAM_TRY_STATUS(guarded([&] { data = mj_makeData(model); }));
-  solver->data_.reset(data);
-  return solver;
+  return or_no_memory("the poses", [&]() -> Result<std::unique_ptr<PoseSolver>> {
+    std::unique_ptr<PoseSolver> solver(new PoseSolver);
+    solver->world_ = std::move(world);
+    solver->layout_ = deformable_layout(*solver->world_->model);
+    const bool sleeps = (solver->model().opt.enableflags & mjENBL_SLEEP) != 0;
+    if (sleeps || !is_zero(solver->world_->render_origin)) solver->own_the_model();
+    solver->data_ = make_data(solver->model());
+    return solver;
+  });
 }
 
-Status PoseSolver::own_the_model() {
-  if (own_model_) return {};
-  mjModel* model = nullptr;
-  GLOAM_TRY_STATUS(guarded([&] { model = mj_copyModel(nullptr, world_->model.get()); }));
-  own_model_.reset(model);
+void PoseSolver::own_the_model() {
+  if (own_model_) return;
+  own_model_ = copy_model(*world_->model);
   own_model_->opt.enableflags &= ~mjENBL_SLEEP;  // kinematics skips what sleeps
   move_model(world_->render_origin, own_model_.get());
-  return {};
 }
 
 // Masses move centres of mass, which cameras and lights may track; no other live field moves
@@ -51,12 +49,8 @@ Status PoseSolver::follow_live_fields(const std::shared_ptr<const LiveFields>& l
   const std::vector<float> masses =
       changed ? live->values[field] : read_live_field(*world_->model, LiveFieldId::kBodyMass);
   if (masses == masses_) return {};
-  GLOAM_TRY_STATUS(own_the_model());
-  if (scratch_ == nullptr) {
-    mjData* scratch = nullptr;
-    GLOAM_TRY_STATUS(guarded([&] { scratch = mj_makeData(own_model_.get()); }));
-    scratch_.reset(scratch);
-  }
+  own_the_model();
+  if (scratch_ == nullptr) scratch_ = make_data(*own_model_);
   masses_ = masses;
   return write_live_field(*world_->model, LiveFieldId::kBodyMass, masses, *own_model_,
                           scratch_.get());

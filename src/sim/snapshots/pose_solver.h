@@ -29,7 +29,7 @@ class PoseSolver {
   PoseSolver() = default;
   const mjModel& model() const { return own_model_ ? *own_model_ : *world_->model; }
   Status follow_live_fields(const std::shared_ptr<const LiveFields>& live);
-  Status own_the_model();
+  void own_the_model();
   void fill_poses(PoseFrame& frame) const;
   void fill_vertices(const LiveFields* live, PoseFrame& frame);
   void fill_live(const LiveFields* live, PoseFrame& frame);

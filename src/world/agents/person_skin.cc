@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/rng.h"
+#include "places/writer/spec_edit.h"
 #include "places/writer/spec_geom.h"
 #include "world/shapes/implicit_mesh.h"
 
@@ -273,8 +274,8 @@ class SkinWriter {
 
  private:
   void add_material(const std::string& name, const Color& color, float roughness) {
-    mjsMaterial* material = mjs_addMaterial(spec_, nullptr);
-    mjs_setName(material->element, name.c_str());
+    mjsMaterial* material = edit(mjs_addMaterial, spec_, nullptr);
+    edit(mjs_setName, material->element, name.c_str());
     for (size_t i = 0; i < 3; ++i) material->rgba[i] = color[i];
     material->roughness = roughness;
     material->specular = 0.3f;
@@ -302,13 +303,14 @@ class SkinWriter {
 
   void add_skin(const std::string& name, const std::string& material, const TriangleMesh& mesh,
                 const std::vector<int>& bones) {
-    mjsSkin* skin = mjs_addSkin(spec_);
-    mjs_setName(skin->element, name.c_str());
-    mjs_setString(skin->material, material.c_str());
+    mjsSkin* skin = edit(mjs_addSkin, spec_);
+    edit(mjs_setName, skin->element, name.c_str());
+    edit(mjs_setString, skin->material, material.c_str());
     skin->group = kVisualGroup;
-    mjs_setFloat(skin->vert, &mesh.positions[0].x, static_cast<int>(3 * mesh.positions.size()));
+    edit(mjs_setFloat, skin->vert, &mesh.positions[0].x,
+         static_cast<int>(3 * mesh.positions.size()));
     const std::vector<int> faces(mesh.indices.begin(), mesh.indices.end());
-    mjs_setInt(skin->face, faces.data(), static_cast<int>(faces.size()));
+    edit(mjs_setInt, skin->face, faces.data(), static_cast<int>(faces.size()));
     std::vector<std::vector<int>> ids(bones.size());
     std::vector<std::vector<float>> weights(bones.size());
     std::vector<float> share(bones.size());
@@ -338,14 +340,15 @@ class SkinWriter {
       if (ids[i].empty()) continue;
       const Vec3f p = pose.joint[bones[i]];
       const Quat q = pose.q[bones[i]];
-      mjs_appendString(skin->bodyname, agent_.body_name(bones[i]).c_str());
+      edit(mjs_appendString, skin->bodyname, agent_.body_name(bones[i]).c_str());
       bind_p.insert(bind_p.end(), {p.x, p.y, p.z});
       for (const double x : {q.w, q.x, q.y, q.z}) bind_q.push_back(static_cast<float>(x));
-      mjs_appendIntVec(skin->vertid, ids[i].data(), static_cast<int>(ids[i].size()));
-      mjs_appendFloatVec(skin->vertweight, weights[i].data(), static_cast<int>(weights[i].size()));
+      edit(mjs_appendIntVec, skin->vertid, ids[i].data(), static_cast<int>(ids[i].size()));
+      edit(mjs_appendFloatVec, skin->vertweight, weights[i].data(),
+           static_cast<int>(weights[i].size()));
     }
-    mjs_setFloat(skin->bindpos, bind_p.data(), static_cast<int>(bind_p.size()));
-    mjs_setFloat(skin->bindquat, bind_q.data(), static_cast<int>(bind_q.size()));
+    edit(mjs_setFloat, skin->bindpos, bind_p.data(), static_cast<int>(bind_p.size()));
+    edit(mjs_setFloat, skin->bindquat, bind_q.data(), static_cast<int>(bind_q.size()));
   }
 
   const AgentDescription& agent_;

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "places/writer/spec_edit.h"
 #include "places/writer/spec_geom.h"
 #include "world/agents/agent_description.h"
 #include "world/agents/person_skin.h"
@@ -17,7 +18,7 @@ namespace {
 constexpr double kLeastLeaf = 0.7;  // half the height of a door leaf at least [m]
 
 void name_element(mjsElement* element, const std::string& name) {
-  mjs_setName(element, name.c_str());
+  edit(mjs_setName, element, name.c_str());
 }
 
 // Environments' bodies that turn about the vertical and are as high as a door.
@@ -48,9 +49,9 @@ class AgentWriter {
     if (agent_.kind == AgentKind::kPerson) GLOAM_TRY_STATUS(add_bodies());
     for (int part = 0; part < agent_.parts(); ++part) {
       for (const std::string& leaf : leaves) {
-        mjsExclude* exclude = mjs_addExclude(spec_);
-        mjs_setString(exclude->bodyname1, leaf.c_str());
-        mjs_setString(exclude->bodyname2, agent_.body_name(part).c_str());
+        mjsExclude* exclude = edit(mjs_addExclude, spec_);
+        edit(mjs_setString, exclude->bodyname1, leaf.c_str());
+        edit(mjs_setString, exclude->bodyname2, agent_.body_name(part).c_str());
       }
     }
     if (agent_.kind == AgentKind::kPerson) {
@@ -70,7 +71,7 @@ class AgentWriter {
             fmt::format("agent '{}': the environment has a body '{}' already", agent_.name, name),
             agent_.loc, "rename the agent"};
       }
-      mjsBody* body = mjs_addBody(mjs_findBody(spec_, "world"), nullptr);
+      mjsBody* body = edit(mjs_addBody, mjs_findBody(spec_, "world"), nullptr);
       name_element(body->element, name);
       body->mocap = 1;
       const double p[3] = {agent_.position.x, agent_.position.y, agent_.position.z};

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <span>
 
+#include "base/memory.h"
 #include "base/text.h"
 #include "geometry/mesh/model_file.h"
 #include "places/generators.h"
@@ -230,8 +231,10 @@ Result<std::shared_ptr<CompiledWorld>> compile_scene(const Scene& written,
 }  // namespace
 
 Result<World> World::compile(const Scene& scene, const ProgressCallback& progress) {
-  GLOAM_TRY(std::shared_ptr<CompiledWorld> world, compile_scene(scene, "", progress));
-  return World(std::move(world));
+  return or_no_memory("the scene's model", [&]() -> Result<World> {
+    GLOAM_TRY(std::shared_ptr<CompiledWorld> world, compile_scene(scene, "", progress));
+    return World(std::move(world));
+  });
 }
 
 Result<World> World::compile_at(const Scene& scene, const std::string& keyframe,
@@ -241,8 +244,10 @@ Result<World> World::compile_at(const Scene& scene, const std::string& keyframe,
                  fmt::format("keyframe '{}': this is a scene, not a model", keyframe),
                  {scene.file.string(), 0, 0},
                  "name it at its robot: [[robot]] keyframe = \"NAME\""};
-  GLOAM_TRY(std::shared_ptr<CompiledWorld> world, compile_scene(scene, keyframe, progress));
-  return World(std::move(world));
+  return or_no_memory("the scene's model", [&]() -> Result<World> {
+    GLOAM_TRY(std::shared_ptr<CompiledWorld> world, compile_scene(scene, keyframe, progress));
+    return World(std::move(world));
+  });
 }
 
 }  // namespace gloam

@@ -7,6 +7,7 @@
 #include <map>
 
 #include "scene/files/mujoco_guard.h"
+#include "world/model_memory.h"
 #include "world/model_names.h"
 
 namespace gloam {
@@ -19,18 +20,17 @@ class Overlaps {
   explicit Overlaps(const CompiledWorld& world) : world_(world), m_(*world.model) {}
 
   std::vector<Error> find() {
-    const DataPtr data(mj_makeData(&m_));
+    const DataPtr data = make_data(m_);
     mjData* d = data.get();
     const MujocoWarningCapture warnings;  // a warning that there are many contacts
-    const bool is_done = d != nullptr && try_mujoco([&] {
-                           world_.initial_key >= 0
-                               ? mj_resetDataKeyframe(&m_, d, world_.initial_key)
-                               : mj_resetData(&m_, d);
-                           mj_kinematics(&m_, d);
-                           mj_comPos(&m_, d);
-                           mj_flex(&m_, d);
-                           mj_collision(&m_, d);
-                         });
+    const bool is_done = try_mujoco([&] {
+      world_.initial_key >= 0 ? mj_resetDataKeyframe(&m_, d, world_.initial_key)
+                              : mj_resetData(&m_, d);
+      mj_kinematics(&m_, d);
+      mj_comPos(&m_, d);
+      mj_flex(&m_, d);
+      mj_collision(&m_, d);
+    });
     if (!is_done) return {};
     for (int i = 0; i < static_cast<int>(d->ncon); ++i) add(d->contact[i]);
     for (const auto& [thing, deepest] : deepest_) tell(thing, deepest);

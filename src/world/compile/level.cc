@@ -10,6 +10,7 @@
 #include "geometry/mesh/model_file.h"
 #include "places/generators.h"
 #include "places/writer/place_writer.h"
+#include "places/writer/spec_edit.h"
 #include "scene/files/mujoco_compiles.h"
 #include "scene/files/mujoco_guard.h"
 #include "scene/files/mujoco_plugins.h"
@@ -32,7 +33,9 @@ namespace {
 
 // Strings cross into MuJoCo by its C functions only: the wheel is built with another standard
 // library, whose std::string has another layout than mjString's declaration says here.
-void set_name(mjsElement* element, const std::string& name) { mjs_setName(element, name.c_str()); }
+void set_name(mjsElement* element, const std::string& name) {
+  edit(mjs_setName, element, name.c_str());
+}
 
 // Reports warnings of MuJoCo's parser and compiler ("<mimic> on joint 'x' ignored"): those of its
 // log, and those after the first `known` of the spec.
@@ -91,7 +94,7 @@ Result<SpecPtr> parse_model(const fs::path& file, const FileAccess& access, Mode
 bool names_mjcf(const EnvironmentOptions& e) { return !e.file.empty() && !is_model_file(e.file); }
 
 void add_default_floor(mjSpec* spec) {
-  mjsTexture* texture = mjs_addTexture(spec, nullptr);
+  mjsTexture* texture = edit(mjs_addTexture, spec, nullptr);
   set_name(texture->element, "floor");
   texture->type = mjTEXTURE_2D;
   texture->builtin = mjBUILTIN_CHECKER;
@@ -100,17 +103,17 @@ void add_default_floor(mjSpec* spec) {
     texture->rgb1[i] = 0.45;
     texture->rgb2[i] = 0.55;
   }
-  mjsMaterial* material = mjs_addMaterial(spec, nullptr);
+  mjsMaterial* material = edit(mjs_addMaterial, spec, nullptr);
   set_name(material->element, "floor");
-  mjs_setInStringVec(material->textures, mjTEXROLE_RGB, "floor");
+  edit(mjs_setInStringVec, material->textures, mjTEXROLE_RGB, "floor");
   material->texrepeat[0] = material->texrepeat[1] = 1;  // one square pattern per metre
   material->texuniform = 1;
-  mjsGeom* floor = mjs_addGeom(mjs_findBody(spec, "world"), nullptr);
+  mjsGeom* floor = edit(mjs_addGeom, mjs_findBody(spec, "world"), nullptr);
   set_name(floor->element, "floor");
   floor->type = mjGEOM_PLANE;
   floor->size[0] = floor->size[1] = 0;  // unbounded
   floor->size[2] = 0.05;
-  mjs_setString(floor->material, "floor");
+  edit(mjs_setString, floor->material, "floor");
 }
 
 // Settings that MuJoCo says an attached model lost, one a line, as "timestep: parent has 0.002,
@@ -163,7 +166,7 @@ Status free_base(const RobotOptions& robot, mjSpec* spec) {
                  "called 'world'");
   if (mjs_firstChild(roots[0], mjOBJ_JOINT, 0) != nullptr)
     return fault("its root has a joint already", "leave out base");
-  mjsJoint* joint = mjs_addFreeJoint(roots[0]);
+  mjsJoint* joint = edit(mjs_addFreeJoint, roots[0]);
   if (joint == nullptr) return fault("MuJoCo refuses the joint", "");
   set_name(joint->element, "floating_base");
   return {};
@@ -247,7 +250,7 @@ Result<Level> assemble(const Scene& scene, const std::optional<Place>& place,
               parse_model(scene.environment.file, scene.access, files, &level.notes, progress));
   } else {
     level.spec.reset(mj_makeSpec());
-    mjs_setString(level.spec->modelname, scene.name.c_str());
+    edit(mjs_setString, level.spec->modelname, scene.name.c_str());
     const bool has_things = !scene.robots.empty() || !scene.objects.empty() || place ||
                             !scene.agents.empty() || !scene.crowds.empty();
     if (!has_generator(scene.environment) && scene.environment.file.empty() && grounds.empty() &&

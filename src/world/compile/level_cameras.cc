@@ -7,7 +7,9 @@
 #include <memory>
 
 #include "base/text.h"
+#include "places/writer/spec_edit.h"
 #include "world/compile/look_at.h"
+#include "world/model_memory.h"
 #include "world/world.h"
 
 namespace gloam {
@@ -55,8 +57,8 @@ Status add_cameras(const Scene& scene, Level* level) {
                    fmt::format("camera '{}': there is no body '{}'", camera.name, name), camera.loc,
                    suggest_name(name, spec_names(spec, mjOBJ_BODY))};
     }
-    mjsCamera* out = mjs_addCamera(body, nullptr);
-    mjs_setName(out->element, camera.name.c_str());
+    mjsCamera* out = edit(mjs_addCamera, body, nullptr);
+    edit(mjs_setName, out->element, camera.name.c_str());
     const Quat q = orientation_of(camera);
     const double position[3] = {camera.position.x, camera.position.y, camera.position.z};
     const double quat[4] = {q.w, q.x, q.y, q.z};
@@ -74,7 +76,7 @@ bool turn_tracking_cameras(const Scene& scene, Level* level) {
                                [](const CameraOptions& c) { return !c.track.empty(); });
   if (!any) return false;
   const mjModel* model = level->model.get();
-  const DataPtr data(mj_makeData(model));
+  const DataPtr data = make_data(*model);
   mj_kinematics(model, data.get());  // at qpos0, where MuJoCo measures tracking offsets
   bool changed = false;
   for (const CameraOptions& camera : scene.cameras) {

@@ -7,6 +7,7 @@
 
 #include "base/check.h"
 #include "base/text.h"
+#include "places/writer/spec_edit.h"
 
 namespace gloam {
 namespace {
@@ -107,7 +108,7 @@ void add_initial_keyframe(const Scene& scene, Level* level) {
   if (!wanted) return;
   std::string name = "initial";
   while (mjs_findElement(level->spec.get(), mjOBJ_KEY, name.c_str()) != nullptr) name += "_";
-  mjs_setName(mjs_addKey(level->spec.get())->element, name.c_str());
+  edit(mjs_setName, edit(mjs_addKey, level->spec.get())->element, name.c_str());
   level->initial_key = 0;  // its place is known once the model is compiled
 }
 
@@ -142,12 +143,12 @@ Status fill_initial_keyframe(Level* level) {
     if (name == mjs_getString(mjs_getName(e))) spec_key = mjs_asKey(e);
   }
   GLOAM_CHECK(spec_key != nullptr, "the model has a keyframe that its spec does not");
-  mjs_setDouble(spec_key->qpos, initial.qpos, static_cast<int>(m->nq));
-  mjs_setDouble(spec_key->qvel, initial.qvel, static_cast<int>(m->nv));
-  mjs_setDouble(spec_key->act, initial.act, static_cast<int>(m->na));
-  mjs_setDouble(spec_key->ctrl, initial.ctrl, static_cast<int>(m->nu));
-  mjs_setDouble(spec_key->mpos, initial.mpos, static_cast<int>(3 * m->nmocap));
-  mjs_setDouble(spec_key->mquat, initial.mquat, static_cast<int>(4 * m->nmocap));
+  edit(mjs_setDouble, spec_key->qpos, initial.qpos, static_cast<int>(m->nq));
+  edit(mjs_setDouble, spec_key->qvel, initial.qvel, static_cast<int>(m->nv));
+  edit(mjs_setDouble, spec_key->act, initial.act, static_cast<int>(m->na));
+  edit(mjs_setDouble, spec_key->ctrl, initial.ctrl, static_cast<int>(m->nu));
+  edit(mjs_setDouble, spec_key->mpos, initial.mpos, static_cast<int>(3 * m->nmocap));
+  edit(mjs_setDouble, spec_key->mquat, initial.mquat, static_cast<int>(4 * m->nmocap));
   return {};
 }
 

@@ -11,6 +11,7 @@
 #include "geometry/convert/convert.h"
 #include "geometry/convert/decompose.h"
 #include "gloam/world.h"
+#include "places/writer/spec_edit.h"
 #include "places/writer/spec_geom.h"
 #include "scene/validate/validate.h"
 #include "world/compile/compile_progress.h"
@@ -32,12 +33,12 @@ class ObjectWriter {
       return Error{ErrorKind::kInput,
                    fmt::format("{}: the environment has a body of that name", title(o_)), o_.loc,
                    "rename the object"};
-    mjsBody* body = mjs_addBody(mjs_findBody(spec_, "world"), nullptr);
+    mjsBody* body = edit(mjs_addBody, mjs_findBody(spec_, "world"), nullptr);
     name(body->element, o_.name);
     write_pose(o_.X_WO, body->pos, body->quat);
     const double mass = o_.mass.value_or(o_.density * converted.mass.volume);
     if (o_.motion == "dynamic") {
-      name(mjs_addFreeJoint(body)->element, o_.name);
+      name(edit(mjs_addFreeJoint, body)->element, o_.name);
       set_inertia(converted.mass, mass, body);
       if (mass < mjMINVAL || *std::min_element(body->inertia, body->inertia + 3) < mjMINVAL)
         return Error{ErrorKind::kInput,
@@ -58,7 +59,7 @@ class ObjectWriter {
 
  private:
   static void name(mjsElement* element, const std::string& text) {
-    mjs_setName(element, text.c_str());
+    edit(mjs_setName, element, text.c_str());
   }
 
   static void set_inertia(const MassProperties& m, double mass, mjsBody* body) {
@@ -79,7 +80,7 @@ class ObjectWriter {
       const std::string mesh = fmt::format("{}/hull_{}", o_.name, number);
       add_mesh(mesh, c.hull);
       geom->type = mjGEOM_MESH;
-      mjs_setString(geom->meshname, mesh.c_str());
+      edit(mjs_setString, geom->meshname, mesh.c_str());
     } else {
       constexpr mjtGeom kTypes[] = {mjGEOM_BOX, mjGEOM_SPHERE, mjGEOM_CYLINDER, mjGEOM_CAPSULE};
       geom->type = kTypes[static_cast<size_t>(c.type)];
@@ -93,12 +94,13 @@ class ObjectWriter {
   }
 
   void add_mesh(const std::string& mesh_name, const TriangleMesh& hull) {
-    mjsMesh* mesh = mjs_addMesh(spec_, nullptr);
+    mjsMesh* mesh = edit(mjs_addMesh, spec_, nullptr);
     name(mesh->element, mesh_name);
     mesh->inertia = mjMESH_INERTIA_SHELL;  // small hulls have too little volume for MuJoCo
-    mjs_setFloat(mesh->uservert, &hull.positions[0].x, static_cast<int>(3 * hull.positions.size()));
+    edit(mjs_setFloat, mesh->uservert, &hull.positions[0].x,
+         static_cast<int>(3 * hull.positions.size()));
     const std::vector<int> faces(hull.indices.begin(), hull.indices.end());
-    mjs_setInt(mesh->userface, faces.data(), static_cast<int>(faces.size()));
+    edit(mjs_setInt, mesh->userface, faces.data(), static_cast<int>(faces.size()));
   }
 
   const ObjectOptions& o_;

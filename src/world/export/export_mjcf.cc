@@ -14,6 +14,7 @@
 #include "base/log.h"
 #include "geometry/image/png_writer.h"
 #include "places/generators.h"
+#include "places/writer/spec_edit.h"
 #include "scene/files/mujoco_compiles.h"
 #include "scene/files/mujoco_guard.h"
 #include "world/compile/level.h"
@@ -93,13 +94,13 @@ class AssetWriter {
       GLOAM_TRY_STATUS(each(spec, type, [&](mjsElement* e) -> Status {
         use_copies(mjs_getCompiler(e));
         if (mjSpec* origin = mjs_getOriginSpec(e); origin != nullptr) {
-          mjs_setString(origin->modelfiledir, fs::absolute(folder_).c_str());
+          edit(mjs_setString, origin->modelfiledir, fs::absolute(folder_).c_str());
           origin->strippath = 0;
         }
         return {};
       }));
     }
-    mjs_setString(spec->modelfiledir, fs::absolute(folder_).c_str());
+    edit(mjs_setString, spec->modelfiledir, fs::absolute(folder_).c_str());
     mjModel* model = nullptr;
     const MujocoWarningCapture warnings;
     const MujocoCompiles threads;
@@ -111,8 +112,8 @@ class AssetWriter {
 
  private:
   static void use_copies(mjsCompiler* compiler) {
-    mjs_setString(compiler->meshdir, "");
-    mjs_setString(compiler->texturedir, "");
+    edit(mjs_setString, compiler->meshdir, "");
+    edit(mjs_setString, compiler->texturedir, "");
   }
 
   template <class F>
@@ -127,7 +128,7 @@ class AssetWriter {
     const int id = mjs_getId(element);
     if (name.empty() || id < 0 || pathadr[id] < 0) return {};
     GLOAM_TRY(const std::string copy, copy_asset(m->paths + pathadr[id]));
-    mjs_setString(file, copy.c_str());
+    edit(mjs_setString, file, copy.c_str());
     return {};
   }
 
@@ -144,8 +145,8 @@ class AssetWriter {
     std::string name = mjs_getString(mjs_getName(element));
     std::replace(name.begin(), name.end(), '/', '_');
     GLOAM_TRY(const std::string copy, write_copy(name, ".png", png));
-    mjs_setString(texture->file, copy.c_str());
-    mjs_setBuffer(texture->data, nullptr, 0);
+    edit(mjs_setString, texture->file, copy.c_str());
+    edit(mjs_setBuffer, texture->data, nullptr, 0);
     return {};
   }
 
@@ -165,8 +166,8 @@ class AssetWriter {
     std::string name = mjs_getString(mjs_getName(element));
     std::replace(name.begin(), name.end(), '/', '_');
     GLOAM_TRY(const std::string copy, write_copy(name, ".hfield", bytes));
-    mjs_setString(hfield->file, copy.c_str());
-    mjs_setFloat(hfield->userdata, nullptr, 0);
+    edit(mjs_setString, hfield->file, copy.c_str());
+    edit(mjs_setFloat, hfield->userdata, nullptr, 0);
     hfield->nrow = hfield->ncol = 0;
     return {};
   }
@@ -182,7 +183,7 @@ class AssetWriter {
       const char* name = mjs_getInStringVec(texture->cubefiles, face);
       if (name == nullptr || *name == 0) continue;
       GLOAM_TRY(const std::string copy, copy_asset(absolute_path(name, folder)));
-      mjs_setInStringVec(texture->cubefiles, face, copy.c_str());
+      edit(mjs_setInStringVec, texture->cubefiles, face, copy.c_str());
     }
     return {};
   }

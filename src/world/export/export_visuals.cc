@@ -8,6 +8,7 @@
 
 #include "base/files.h"
 #include "base/srgb.h"
+#include "places/writer/spec_edit.h"
 #include "world/model_names.h"
 #include "world/render_description.h"
 
@@ -94,7 +95,7 @@ class VisualExport {
     if (instance.shape == ShapeType::kMesh) {
       GLOAM_TRY(mesh, mesh_of(instance.mesh));
     }
-    mjsGeom* geom = mjs_addGeom(body->second, nullptr);
+    mjsGeom* geom = edit(mjs_addGeom, body->second, nullptr);
     if (geom == nullptr) return Error{ErrorKind::kUnsupported, "MuJoCo takes no visual geom"};
     geom->type = geom_type(instance.shape);
     geom->contype = geom->conaffinity = 0;
@@ -107,7 +108,7 @@ class VisualExport {
     geom->rgba[1] = srgb_encode(material.base_color.y);
     geom->rgba[2] = srgb_encode(material.base_color.z);
     geom->rgba[3] = material.opacity;
-    if (!mesh.empty()) mjs_setString(geom->meshname, mesh.c_str());
+    if (!mesh.empty()) edit(mjs_setString, geom->meshname, mesh.c_str());
     const auto textures = material.textures.all();
     if (std::ranges::any_of(textures, [](int row) { return row >= 0; })) ++pictures_;
     ++count_;
@@ -136,9 +137,9 @@ class VisualExport {
     GLOAM_TRY_STATUS(make_folder(folder_ / "assets"));
     GLOAM_TRY_STATUS(write_file_atomic(
         folder_ / file, {reinterpret_cast<const uint8_t*>(text.data()), text.size()}));
-    mjsMesh* mesh = mjs_addMesh(spec_, nullptr);
-    mjs_setName(mesh->element, name.c_str());
-    mjs_setString(mesh->file, file.c_str());
+    mjsMesh* mesh = edit(mjs_addMesh, spec_, nullptr);
+    edit(mjs_setName, mesh->element, name.c_str());
+    edit(mjs_setString, mesh->file, file.c_str());
     mesh->inertia = mjMESH_INERTIA_SHELL;  // plates have no volume
     return name;
   }

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "base/files.h"
+#include "places/writer/spec_edit.h"
 #include "scene/mjcf/spec_fields.h"
 
 namespace gloam {
@@ -97,9 +98,10 @@ void NegativeZeros::mark_vector(mjDoubleVec* values) {
   const std::vector<double> before(data, data + size);
   std::vector<double> marked = before;
   std::replace_if(marked.begin(), marked.end(), is_negative_zero, kMarkDouble);
-  mjs_setDouble(values, marked.data(), size);
-  restore_.emplace_back(
-      [values, before] { mjs_setDouble(values, before.data(), static_cast<int>(before.size())); });
+  edit(mjs_setDouble, values, marked.data(), size);
+  restore_.emplace_back([values, before] {
+    edit(mjs_setDouble, values, before.data(), static_cast<int>(before.size()));
+  });
 }
 
 NegativeZeros::~NegativeZeros() {

@@ -12,6 +12,7 @@
 #include "scene/files/mujoco_guard.h"
 #include "scene/files/urdf_text.h"
 #include "world/compile/model_loader.h"
+#include "world/model_memory.h"
 #include "world/model_names.h"
 #include "world/world.h"
 
@@ -84,7 +85,7 @@ Result<ModelPtr> compile_visuals(const std::vector<UrdfRobot>& robots, ModelFile
 // Both models stand at qpos0, and between a link and the body that it was fused into nothing moves:
 // the pose of the geom in that body is the same at every instant.
 std::vector<VisualOnlyGeom> place_geoms(const mjModel* visual, const mjModel* physics) {
-  const DataPtr visual_data(mj_makeData(visual)), physics_data(mj_makeData(physics));
+  const DataPtr visual_data = make_data(*visual), physics_data = make_data(*physics);
   mj_kinematics(visual, visual_data.get());
   mj_kinematics(physics, physics_data.get());
   std::vector<VisualOnlyGeom> geoms;

@@ -6,6 +6,7 @@
 #include <array>
 #include <map>
 
+#include "world/model_memory.h"
 #include "world/model_names.h"
 #include "world/shapes/capsule_mesh.h"
 #include "world/shapes/deformable_layout.h"
@@ -226,7 +227,7 @@ void describe_deformables(const mjModel& model, const std::vector<Affine3f>& pos
   const DeformableLayout layout = deformable_layout(model);
   if (model.nflex == 0 && !layout.has_tendons) return;
   // MuJoCo knows how interpolated flexes place their vertices.
-  const std::unique_ptr<mjData, void (*)(mjData*)> data{mj_makeData(&model), mj_deleteData};
+  const DataPtr data = make_data(model);
   mj_kinematics(&model, data.get());
   mj_comPos(&model, data.get());
   mj_flex(&model, data.get());

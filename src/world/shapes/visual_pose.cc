@@ -1,5 +1,7 @@
 #include "world/shapes/visual_pose.h"
 
+#include "world/model_memory.h"
+
 namespace gloam {
 
 Affine3f rigid_pose(const mjtNum* position, const mjtNum* quaternion) {
@@ -23,8 +25,7 @@ std::vector<Affine3f> body_poses_at_qpos0(const mjModel& model) {
 std::vector<Affine3f> body_poses_at_start(const CompiledWorld& world) {
   const mjModel& m = *world.model;
   if (world.initial_key < 0) return body_poses_at_qpos0(m);
-  const DataPtr data(mj_makeData(&m));
-  if (data == nullptr) return body_poses_at_qpos0(m);
+  const DataPtr data = make_data(m);
   mj_resetDataKeyframe(&m, data.get(), world.initial_key);
   mj_kinematics(&m, data.get());
   std::vector<Affine3f> poses;

@@ -6,6 +6,7 @@
 
 #include "geometry/mesh/single.h"
 #include "scene/files/mujoco_guard.h"
+#include "world/model_memory.h"
 
 namespace gloam {
 namespace {
@@ -47,7 +48,7 @@ void move(const std::array<double, 3>& by, T* p) {
 }
 
 ModelPtr copy_of(const mjModel* model) {
-  return ModelPtr(model != nullptr ? mj_copyModel(nullptr, model) : nullptr);
+  return model != nullptr ? copy_model(*model) : ModelPtr();
 }
 
 }  // namespace
@@ -55,8 +56,7 @@ ModelPtr copy_of(const mjModel* model) {
 Vec3 choose_render_origin(const CompiledWorld& world, std::vector<Error>* notes) {
   const mjModel& m = *world.model;
   if (m.ngeom == 0 || !starts_far(m, world.initial_key)) return {};
-  const DataPtr data(mj_makeData(&m));
-  if (data == nullptr) return {};
+  const DataPtr data = make_data(m);
   if (world.initial_key >= 0) mj_resetDataKeyframe(&m, data.get(), world.initial_key);
   mj_kinematics(&m, data.get());
   double origin[3];

@@ -1,5 +1,7 @@
 #include "world/weather/ground_below.h"
 
+#include "world/model_memory.h"
+
 #include <algorithm>
 #include <cmath>
 #include <memory>
@@ -54,7 +56,7 @@ double top_below(const mjModel& m, const mjData& d, int geom, double x, double y
 
 GroundBelow::GroundBelow(const mjModel& m, const GroundArea& area, int nx, int ny, bool sky)
     : nx_(nx), ny_(ny) {
-  const std::unique_ptr<mjData, void (*)(mjData*)> data{mj_makeData(&m), mj_deleteData};
+  const DataPtr data = make_data(m);
   mj_kinematics(&m, data.get());
   const std::vector<int> geoms = still_geoms(m, *data, area);
   for (int j = 0; j <= ny_; ++j) {

@@ -2,9 +2,9 @@
 // A RenderScene and what the CPU's rays go through: Embree where it is given one, or our own BVH.
 
 #include <memory>
+#include <new>
 #include <utility>
 
-#include "base/check.h"
 #include "render/cpu/tracer/embree_scene.h"
 #include "render/scene/bvh_scene.h"
 
@@ -21,8 +21,8 @@ class TracedScene {
 
   void update(std::span<const PoseFrame* const> keys, const PoseFrame& previous) {
     scene_->update(keys, previous);
-    if (embree_ != nullptr)
-      GLOAM_CHECK(embree_->update(*scene_).ok(), "the BVH cannot be built: out of memory?");
+    // All geometry is valid, so that Embree can only fail for want of memory.
+    if (embree_ != nullptr && !embree_->update(*scene_).ok()) throw std::bad_alloc();
     if (keeps_own_) own_.update(*scene_);
   }
 

@@ -8,6 +8,7 @@
 #include "base/check.h"
 #include "gloam/command.h"
 #include "scene/files/mujoco_guard.h"
+#include "world/model_memory.h"
 #include "world/shapes/visual_pose.h"
 
 namespace gloam {
@@ -70,12 +71,9 @@ Result<std::unique_ptr<GasObstacles>> GasObstacles::create(
     std::shared_ptr<const CompiledWorld> world, const GasGrid& grid, double sealed_gap) {
   GLOAM_TRY_STATUS(check_grid(grid, sealed_gap));
   std::unique_ptr<GasObstacles> made(new GasObstacles(std::move(world), grid, sealed_gap));
-  mjData* data = nullptr;
-  GLOAM_TRY_STATUS(guarded([&] {
-    data = mj_makeData(&made->model_);
-    mj_kinematics(&made->model_, data);
-  }));
-  made->data_.reset(data);
+  made->data_ = make_data(made->model_);
+  mjData* data = made->data_.get();
+  GLOAM_TRY_STATUS(guarded([&] { mj_kinematics(&made->model_, data); }));
   made->sort_geoms();
   made->voxelise_still();
   return made;

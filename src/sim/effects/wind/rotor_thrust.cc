@@ -1,6 +1,7 @@
 #include "sim/effects/wind/rotor_thrust.h"
 
 #include "scene/files/mujoco_guard.h"
+#include "world/model_memory.h"
 #include "world/shapes/visual_pose.h"
 
 namespace gloam {
@@ -14,9 +15,7 @@ RotorThrust::RotorThrust(std::shared_ptr<const CompiledWorld> world)
 Result<std::unique_ptr<RotorThrust>> RotorThrust::create(
     std::shared_ptr<const CompiledWorld> world) {
   std::unique_ptr<RotorThrust> made(new RotorThrust(std::move(world)));
-  mjData* data = nullptr;
-  GLOAM_TRY_STATUS(guarded([&] { data = mj_makeData(&made->model_); }));
-  made->data_.reset(data);
+  made->data_ = make_data(made->model_);
   return made;
 }
 
