@@ -155,9 +155,8 @@ Status choose_keyframe(const std::string& keyframe, CompiledWorld* world) {
                    : fmt::format("its keyframes have no names: give a number, 0 to {}", count - 1)};
 }
 
-Result<std::shared_ptr<CompiledWorld>> compile_scene(const Scene& written,
-                                                     const std::string& keyframe,
-                                                     const ProgressCallback& callback) {
+Result<World> compile_scene(const Scene& written, const std::string& keyframe,
+                            const ProgressCallback& callback) {
   install_mujoco_handler();
   GLOAM_TRY_STATUS(validate_scene(written));
   Scene scene = written;
@@ -197,7 +196,7 @@ Result<std::shared_ptr<CompiledWorld>> compile_scene(const Scene& written,
     cached->written = written;
     cached->keyframe = keyframe;
     progress.finish();
-    return cached;
+    return World(std::move(cached));
   }
   const auto start = std::chrono::steady_clock::now();
   ModelFiles files;
@@ -225,16 +224,13 @@ Result<std::shared_ptr<CompiledWorld>> compile_scene(const Scene& written,
   if (std::chrono::steady_clock::now() - start > kWorthCaching)
     store_cached_world(world, world->files);
   progress.finish();
-  return world;
+  return World(std::move(world));
 }
 
 }  // namespace
 
 Result<World> World::compile(const Scene& scene, const ProgressCallback& progress) {
-  return or_no_memory("the scene's model", [&]() -> Result<World> {
-    GLOAM_TRY(std::shared_ptr<CompiledWorld> world, compile_scene(scene, "", progress));
-    return World(std::move(world));
-  });
+  return or_no_memory("the scene's model", [&] { return compile_scene(scene, "", progress); });
 }
 
 Result<World> World::compile_at(const Scene& scene, const std::string& keyframe,
@@ -244,10 +240,8 @@ Result<World> World::compile_at(const Scene& scene, const std::string& keyframe,
                  fmt::format("keyframe '{}': this is a scene, not a model", keyframe),
                  {scene.file.string(), 0, 0},
                  "name it at its robot: [[robot]] keyframe = \"NAME\""};
-  return or_no_memory("the scene's model", [&]() -> Result<World> {
-    GLOAM_TRY(std::shared_ptr<CompiledWorld> world, compile_scene(scene, keyframe, progress));
-    return World(std::move(world));
-  });
+  return or_no_memory("the scene's model",
+                      [&] { return compile_scene(scene, keyframe, progress); });
 }
 
 }  // namespace gloam
