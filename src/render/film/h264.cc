@@ -7,6 +7,7 @@
 #include <span>
 
 #include "base/check.h"
+#include "base/memory.h"
 
 namespace gloam {
 namespace {
@@ -38,8 +39,10 @@ class OpenH264Encoder : public H264Encoder {
     source.pData[1] = const_cast<uint8_t*>(picture.u.data());
     source.pData[2] = const_cast<uint8_t*>(picture.v.data());
     SFrameBSInfo info = {};
-    if (encoder_->EncodeFrame(&source, &info) != cmResultSuccess ||
-        info.eFrameType == videoFrameTypeInvalid || info.eFrameType == videoFrameTypeSkip)
+    const int encoded = encoder_->EncodeFrame(&source, &info);
+    if (encoded == cmMallocMemeError) return no_memory_for("the H.264 encoder");
+    if (encoded != cmResultSuccess || info.eFrameType == videoFrameTypeInvalid ||
+        info.eFrameType == videoFrameTypeSkip)
       return Error{ErrorKind::kIo, "the H.264 encoder failed"};
     H264Picture out;
     out.key = info.eFrameType == videoFrameTypeIDR;
@@ -95,8 +98,7 @@ Result<std::unique_ptr<H264Encoder>> H264Encoder::create(int width, int height, 
                  "change the resolution or record 'png' instead of 'video'"};
   }
   ISVCEncoder* raw = nullptr;
-  if (WelsCreateSVCEncoder(&raw) != 0 || raw == nullptr)
-    return Error{ErrorKind::kIo, "the H.264 encoder could not be created"};
+  if (WelsCreateSVCEncoder(&raw) != 0 || raw == nullptr) return no_memory_for("the H.264 encoder");
   std::unique_ptr<ISVCEncoder, EncoderDeleter> encoder(raw);
   int quiet = WELS_LOG_QUIET;
   raw->SetOption(ENCODER_OPTION_TRACE_LEVEL, &quiet);
@@ -146,7 +148,9 @@ Result<std::unique_ptr<H264Encoder>> H264Encoder::create(int width, int height, 
   layer.uiColorPrimaries = CP_BT709;
   layer.uiTransferCharacteristics = TRC_BT709;
   layer.uiColorMatrix = CM_BT709;
-  if (raw->InitializeExt(&p) != cmResultSuccess)
+  const int initialized = raw->InitializeExt(&p);
+  if (initialized == cmMallocMemeError) return no_memory_for("the H.264 encoder");
+  if (initialized != cmResultSuccess)
     return Error{ErrorKind::kUnsupported,
                  fmt::format("the H.264 encoder refused {} x {} pixels", width, height)};
   return std::unique_ptr<H264Encoder>(new OpenH264Encoder(std::move(encoder), width, height));
