@@ -120,13 +120,16 @@ Result<std::vector<CameraFrame>> render_stills(const World& world, double time,
     const KeySteps keys = key_steps(sensor->window(), timestep);
     std::vector<const PoseFrame*> exposure;
     for (int k = 0; k < keys.count; ++k) exposure.push_back(&poses[steps + k * keys.stride]);
+    // Draws are keyed by the step: pictures of two times have different noise.
+    sensor->set_draws_by_index(true);
     const auto frame =
-        sensor->capture(*shared->renderer, shared->mutex, exposure, poses[previous[i]], 0);
+        sensor->capture(*shared->renderer, shared->mutex, exposure, poses[previous[i]], steps);
     if (frame == nullptr) return Error{ErrorKind::kInterrupted, "interrupted"};
     if (requests[i].render.error) {
       tell_what_was_reached(requests[i], *frame, sensor->stats());
     }
     frames.push_back(*frame);
+    frames.back().index = 0;
   }
   return frames;
 }

@@ -59,6 +59,37 @@ TEST(Stills, MotionCountsFromThePictureBefore) {
   }
 }
 
+TEST(Stills, OfTwoTimesHaveNoiseOfTheirOwn) {
+  const TempFolder folder;
+  const World world = compile_text(folder, "room.toml", R"(
+[environment.bedroom]
+seed = 1
+[[camera]]
+name = "still"
+position = [0, 0, 1.5]
+look_at = [1, 0, 1]
+[camera.imager]
+bits = 8
+)");
+  const auto pictures = [&](double time, bool denoise, const std::string& output) {
+    CameraRequest request = small("still");
+    request.outputs = {output};
+    request.render.denoise = denoise;
+    const auto frames = render_stills(world, time, {request}, {});
+    EXPECT_TRUE(frames.ok()) << frames.error().to_string();
+    return frames.ok() ? frames->front() : CameraFrame{};
+  };
+  for (const bool denoise : {false, true}) {
+    const CameraFrame first = pictures(0, denoise, "radiance");
+    EXPECT_EQ(first.radiance, pictures(0, denoise, "radiance").radiance);
+    EXPECT_NE(first.radiance, pictures(0.1, denoise, "radiance").radiance) << denoise;
+    EXPECT_NE(pictures(0.102, denoise, "radiance").radiance,
+              pictures(0.1, denoise, "radiance").radiance);
+    EXPECT_EQ(first.index, 0);
+  }
+  EXPECT_NE(pictures(0, true, "rgb").rgb, pictures(0.1, true, "rgb").rgb) << "the imager's";
+}
+
 TEST(Stills, SayWhatIsWrong) {
   const TempFolder folder;
   const World world = flight(folder);

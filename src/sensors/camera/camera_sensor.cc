@@ -267,7 +267,8 @@ uint32_t CameraSensor::draws(const CameraView& view, int64_t frame_index) const 
   if (sensing().events) return 0;
   if (denoiser_ == nullptr || settings_.tier == RenderTier::kFast)
     return static_cast<uint32_t>(frame_index);
-  return static_cast<uint32_t>(hash_bytes(&view.X_WC_open, sizeof(view.X_WC_open)));
+  const uint64_t index = draws_by_index_ ? static_cast<uint64_t>(frame_index) : 0;
+  return static_cast<uint32_t>(hash_bytes(&view.X_WC_open, sizeof(view.X_WC_open), index));
 }
 
 void CameraSensor::begin_samples(const CameraView& view) {

@@ -59,6 +59,9 @@ class CameraSensor {
   /// the first, which it replaces (that one's samples may lie at pixel centres). Not for the fast
   /// tier, which has a history of its own, for adaptive samples or for events.
   void set_same_instant(bool same) { same_instant_ = same; }
+  /// Pictures have draws of their own even where the camera stands still and a denoiser is on: of
+  /// stills, which are no frames of one video.
+  void set_draws_by_index(bool by_index) { draws_by_index_ = by_index; }
   /// From the first row's exposure to the end of the last one's [s]; 0 = an instant.
   Rational window() const;
 
@@ -125,7 +128,7 @@ class CameraSensor {
   std::unique_ptr<Denoiser> denoiser_;  // null: the samples as they are
   Film film_;
   std::vector<Vec3f> clean_;
-  bool same_instant_ = false;
+  bool same_instant_ = false, draws_by_index_ = false;
   Affine3f accumulated_from_;   // pose of the camera
   int pictures_ = 0;            // in a row of one instant from one pose
   std::vector<Vec3f> sums_[3];  // sums of radiance, albedo and normal over them
