@@ -62,7 +62,10 @@ struct WeatherOptions {
   std::optional<std::string> medium = {};
   std::optional<std::string> where = {};  ///< place of the medium: everywhere (default) | rooms,
                                           ///< only those of a generated building
-  double scale_height = 0;  ///< over which it thins to 1/e above the lowest ground [m]; 0 = even
+  double base = 0;          ///< z from which the weather's heights count [m]: that of the ground
+  double height = 15;       ///< up to which the medium hangs above `base`, if it is even [m]
+  double scale_height = 0;  ///< height above `base` over which it thins to 1/e [m]; 0 = even. Below
+                            ///< `base` it is as dense as there
   double turbulence = 0;    ///< turbulence of its density: standard deviation over mean, 0 … 1
   std::optional<double> wind = {};  ///< mean speed 10 m above the ground [m/s], default 0
   double wind_from = 270;           ///< direction it comes from, as [sky]'s azimuth [deg]

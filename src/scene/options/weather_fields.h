@@ -20,6 +20,8 @@ void visit_fields(Visitor& v, WeatherOptions& o) {
   v("visibility", o.visibility, FieldRule{.unit = "m", .min = 0, .max = 1e6, .open = true});
   v("medium", o.medium, FieldRule{});
   v("where", o.where, FieldRule{.choices = words(kWeatherPlaces)});
+  v("base", o.base, FieldRule{.unit = "m", .min = -kLargestLength, .max = kLargestLength});
+  v("height", o.height, FieldRule{.unit = "m", .min = 0, .max = 1e4, .open = true});
   v("scale_height", o.scale_height, FieldRule{.unit = "m", .min = 0, .max = 1e4});
   v("turbulence", o.turbulence, kShare);
   v("wind", o.wind, FieldRule{.unit = "m/s", .min = 0, .max = 60});

@@ -47,6 +47,26 @@ TEST(Particles, OneSeesAsFarThroughThemAsIsMeasured) {
               ::testing::AllOf(::testing::Ge(500), ::testing::Le(2000)));
 }
 
+/// Density of what the weather puts at a place, of the nearest voxels [kg/m³].
+double density_at(const RenderDescription& d, Vec3f p) {
+  double sum = 0;
+  for (const VolumeDescription& v : d.volumes) {
+    const Vec3f at = p - v.X_WV.p + v.size * 0.5f;
+    if (!(at.x >= 0 && at.y >= 0 && at.z >= 0 && at.x < v.size.x && at.y < v.size.y &&
+          at.z < v.size.z))
+      continue;
+    const auto row = [](float x, float size, int n) {
+      return std::min(static_cast<int>(x / size * static_cast<float>(n)), n - 1);
+    };
+    const int i = row(at.x, v.size.x, v.nx), j = row(at.y, v.size.y, v.ny),
+              k = row(at.z, v.size.z, v.nz);
+    sum += static_cast<double>(
+        v.density == nullptr ? v.even_density
+                             : (*v.density)[static_cast<size_t>((k * v.ny + j) * v.nx + i)]);
+  }
+  return sum;
+}
+
 class Weather : public ::testing::Test {
  protected:
   Weather() {
@@ -95,8 +115,71 @@ TEST_F(Weather, FallsWhereTheSkyIsOpen) {
   EXPECT_EQ(sky.open_above({5, 1, 3.5f}, 0), 1) << "over the roof";
   EXPECT_EQ(sky.open_above({-3, 0, 0.5f}, 0), 1) << "what moves is no roof";
   EXPECT_EQ(sky.open_above({500, 0, -3}, 0), 1) << "beyond all that stands there";
-  ASSERT_EQ(d.volumes.size(), 1u);
-  ASSERT_NE(d.volumes[0].density, nullptr) << "a roof keeps rain off what is under it";
+  const double rain = static_cast<double>(rain_particles(10).water);
+  EXPECT_EQ(density_at(d, {5, 1, 1}), 0) << "a roof keeps rain off what is under it";
+  EXPECT_NEAR(density_at(d, {5, 1, 4.5f}) / rain, 1, 1e-5) << "not what is above it";
+  EXPECT_NEAR(density_at(d, {0.2f, 0.3f, 0.6f}) / rain, 1, 1e-5);
+}
+
+/// Floors and buildings, of which what is in the air must not know.
+const char* const kPlaces[] = {
+    R"(<geom type="plane" size="0 0 1"/>)",
+    R"(<geom type="plane" size="20 20 1"/>)",
+    R"(<geom type="plane" size="300 300 1"/>)",
+    R"(<geom type="plane" size="0 0 1"/><geom type="box" size="1 1 1.5" pos="-8 3 1.5"/>)",
+    R"(<geom type="plane" size="50 50 1"/><geom type="box" size="5 5 30" pos="-30 9 30"/>)",
+    R"(<geom type="box" size="100 100 .1" pos="0 0 -.1"/>)",
+    R"(<geom type="box" size="2 2 0.1" pos="-9 0 -4"/>)"};
+
+TEST_F(Weather, ReachesAsFarWhateverStandsInThePlace) {
+  const auto describe_in = [&](const char* place, const std::string& text) {
+    folder_.write("yard.xml", std::string("<mujoco><worldbody>") + place + "</worldbody></mujoco>");
+    return described(text);
+  };
+  const Vec3f points[] = {{0, 0, 1},     {67, 0, 2},    {-60, 45, 0.3f}, {3, 3, 14},
+                          {200, -90, 9}, {700, 650, 5}, {40, 2, -3}};
+  for (const char* place : kPlaces) {
+    SCOPED_TRACE(place);
+    const RenderDescription rain = describe_in(place, "[weather]\nrain = 25\n");
+    const RenderDescription snow = describe_in(place, "[weather]\nsnow = 2\n");
+    const RenderDescription fog = describe_in(place, "[weather]\nvisibility = 100\n");
+    for (const Vec3f& p : points) {
+      EXPECT_NEAR(density_at(rain, p) / static_cast<double>(rain_particles(25).water), 1, 1e-5);
+      EXPECT_NEAR(density_at(snow, p) / static_cast<double>(snow_particles(2).water), 1, 1e-5);
+      EXPECT_NEAR(density_at(fog, p) / static_cast<double>(fog.volumes[0].even_density), 1, 1e-5);
+    }
+    EXPECT_GT(density_at(rain, {5, 5, 190}), 0);
+    EXPECT_EQ(density_at(rain, {5, 5, 201}), 0) << "it falls from 200 m";
+    EXPECT_EQ(density_at(fog, {5, 5, 15.1f}), 0) << "15 m deep";
+  }
+}
+
+TEST_F(Weather, HazeThinsWithTheHeightAboveItsBase) {
+  for (const char* place : kPlaces) {
+    SCOPED_TRACE(place);
+    folder_.write("yard.xml", std::string("<mujoco><worldbody>") + place + "</worldbody></mujoco>");
+    for (const double scale : {3.0, 20.0, 800.0}) {
+      for (const double base : {0.0, 30.0, -12.0}) {
+        const RenderDescription d = described(
+            "[weather]\nmedium = \"haze\"\nvisibility = 500\nscale_height = " +
+            std::to_string(scale) + "\nbase = " + std::to_string(base) + "\n");
+        const auto even = static_cast<double>(d.volumes[0].even_density);
+        for (const double height : {-5.0, 0.1, 2.0, 10.0, 40.0}) {
+          if (height > 6 * scale) continue;
+          const double law = std::exp(-std::max(height, 0.0) / scale);
+          const Vec3f p{7, 9, static_cast<float>(base + height)};
+          EXPECT_NEAR(density_at(d, p) / even / law, 1, 0.04) << scale << " " << base << " " << height;
+        }
+      }
+    }
+  }
+}
+
+TEST_F(Weather, FogHasTheHeightThatItIsGiven) {
+  const RenderDescription d =
+      described("[weather]\nvisibility = 100\nheight = 40\nbase = 5\n");
+  EXPECT_GT(density_at(d, {5, 5, 44}), 0);
+  EXPECT_EQ(density_at(d, {5, 5, 46}), 0);
 }
 
 TEST_F(Weather, OfFogOneSeesAsFarAsIsAskedFor) {
@@ -144,7 +227,8 @@ TEST_F(Weather, SmokeOfAdversityIsInTheRoomsAlone) {
 TEST_F(Weather, FogInBillowsHasTheMeanAndTheSpreadAskedFor) {
   const RenderDescription d =
       described("[weather]\nvisibility = 50\nturbulence = 0.5\nscale_height = 10\n");
-  const VolumeDescription& fog = d.volumes[0];
+  const auto billows = std::ranges::max_element(d.volumes, {}, &VolumeDescription::nx);
+  const VolumeDescription& fog = *billows;
   ASSERT_NE(fog.density, nullptr);
   const auto layer = static_cast<size_t>(fog.nx * fog.ny);
   double mean = 0, square = 0;
@@ -157,7 +241,7 @@ TEST_F(Weather, FogInBillowsHasTheMeanAndTheSpreadAskedFor) {
     square += (at(i) - mean) * (at(i) - mean) / static_cast<double>(layer);
   const double step = static_cast<double>(fog.size.z) / fog.nz;
   const double ground = static_cast<double>(fog.even_density);
-  EXPECT_NEAR(mean / (ground * std::exp(-(2.5 * step - 1) / 10)), 1, 0.1);
+  EXPECT_NEAR(mean / (ground * std::exp(-2.5 * step / 10)), 1, 0.1);
   EXPECT_NEAR(std::sqrt(square) / mean, 0.5, 0.1);
 }
 

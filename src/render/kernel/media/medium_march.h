@@ -110,6 +110,30 @@ GLOAM_HD float glow_step(const MediumWalk& walk, Bands bands) {
 
 }  // namespace media
 
+namespace media {
+
+/// Transmittance below which nothing behind is seen.
+inline constexpr float kDark = 1e-3f;
+
+/// Distance [m] at which the ray leaves the last volume, or even media alone hide what follows.
+/// `walk` is at its beginning.
+GLOAM_HD float end_of_view(const MediumWalk& walk, Bands bands) {
+  constexpr float kDarkDepth = 7;
+  float end = 0, hidden = 3e38f;
+  for (int i = 0; i < walk.count(); ++i) {
+    const VolumeView& v = walk[i].volume();
+    end = max(end, walk[i].end());
+    if (!v.density.empty() || v.fade > 0) continue;
+    const Vec3f k = bands.of(v.mass_extinction) * v.even_density;
+    const float clearest = min(k.x, min(k.y, k.z));
+    if (clearest * (walk[i].end() - walk[i].to()) > kDarkDepth)
+      hidden = min(hidden, walk[i].to() + kDarkDepth / clearest);
+  }
+  return min(end, hidden);
+}
+
+}  // namespace media
+
 /// Marches through the media in steps of at most `step` [m], or longer ones where that would take
 /// more than about `max_steps`. Empty cells are skipped. Along a step all is as in its middle and
 /// Beer-Lambert's law is integrated, so even media are exact with any step.
@@ -118,14 +142,13 @@ GLOAM_HD float glow_step(const MediumWalk& walk, Bands bands) {
 template <class Source>
 GLOAM_HD MarchResult march(const MediaView& media, const Ray& ray, float tmax, float step,
                            int max_steps, Bands bands, bool glows, const Source& source) {
-  // Transmittance below which nothing behind is seen.
-  constexpr float kDark = 1e-3f;
   MarchResult result;
   result.transmittance = {1, 1, 1};
   MediumWalk walk(media, ray, tmax);
-  float far = 0;
-  for (int i = 0; i < walk.count(); ++i) far = max(far, walk[i].end());
-  if (!walk.is_over()) step = max(step, (far - walk.to()) / static_cast<float>(max_steps));
+  if (!walk.is_over()) {
+    const float way = media::end_of_view(walk, bands) - walk.to();
+    step = max(step, way / static_cast<float>(max_steps));
+  }
   for (float t = 0; !walk.is_over(); t = walk.to(), walk.advance()) {
     bool is_empty = true;
     bool is_hot = false;
@@ -164,7 +187,7 @@ GLOAM_HD MarchResult march(const MediaView& media, const Ray& ray, float tmax, f
       const Vec3f weight = before * media::mean_transmittance(mean.extinction * ds) * ds;
       result.scattered += weight * mean.scattering;
       result.radiance += weight * source(MarchStep{mean, begin, ds, weight, is_hot});
-      if (max_component(result.transmittance) < kDark) return result;
+      if (max_component(result.transmittance) < media::kDark) return result;
     }
   }
   return result;
