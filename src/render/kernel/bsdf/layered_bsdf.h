@@ -34,8 +34,9 @@ namespace layers {
 /// Share that glass reflects at the microfacet; *cos_t as in fresnel_dielectric.
 template <class F>
 GLOAM_HD F glass_reflects(const LayeredBsdfOf<F>& b, F cos_h, F* cos_t) {
-  const F f = fresnel_dielectric(cos_h, b.eta, cos_t);
-  return select(b.thin, 2.0f * f / (1.0f + f), f);  // a sheet: all the reflections inside too
+  const F face = fresnel_dielectric(cos_h, b.eta, cos_t);
+  if (!any(b.thin)) return face;
+  return select(b.thin, fresnel_sheet(cos_h, b.eta, cos_t), face);
 }
 /// Probability of reflection where `reflects` of the light is reflected.
 template <class F>

@@ -6,16 +6,39 @@
 
 namespace gloam {
 
-/// Share of unpolarised light that a smooth dielectric reflects; `eta` = index of refraction of the
-/// far side over that of the near side. *cos_t: cosine of the refracted direction, 0 = total
-/// reflection.
+/// Fractions of light that a smooth dielectric reflects, by its polarisation: across the plane of
+/// incidence and in it.
 template <class F>
-GLOAM_HD F fresnel_dielectric(F cos_i, F eta, F* cos_t) {
+struct FresnelOf {
+  F s, p;
+};
+
+/// `eta` = index of refraction of the far side over that of the near side. *cos_t: cosine of the
+/// refracted direction, 0 = total reflection.
+template <class F>
+GLOAM_HD FresnelOf<F> fresnel_polarised(F cos_i, F eta, F* cos_t) {
   const F sin2_t = (1.0f - cos_i * cos_i) / (eta * eta);
   *cos_t = safe_sqrt(1.0f - sin2_t);
   const F s = (cos_i - eta * *cos_t) / (cos_i + eta * *cos_t);
   const F p = (eta * cos_i - *cos_t) / (eta * cos_i + *cos_t);
-  return select(sin2_t >= 1.0f, F(1.0f), 0.5f * (s * s + p * p));
+  return {select(sin2_t >= 1.0f, F(1.0f), s * s), select(sin2_t >= 1.0f, F(1.0f), p * p)};
+}
+
+/// Fraction of unpolarised light that a smooth dielectric reflects.
+template <class F>
+GLOAM_HD F fresnel_dielectric(F cos_i, F eta, F* cos_t) {
+  const FresnelOf<F> r = fresnel_polarised(cos_i, eta, cos_t);
+  return 0.5f * (r.s + r.p);
+}
+
+/// Fraction of unpolarised light that a smooth sheet with two parallel faces reflects, with all the
+/// reflections between them: the first face polarises, so each polarisation has its own series
+/// R + T² R (1 + R² + …) = 2 R / (1 + R) (Born and Wolf 1999, "Principles of optics", 1.5.2; the
+/// sheet is thicker than light is coherent).
+template <class F>
+GLOAM_HD F fresnel_sheet(F cos_i, F eta, F* cos_t) {
+  const FresnelOf<F> r = fresnel_polarised(cos_i, eta, cos_t);
+  return r.s / (1.0f + r.s) + r.p / (1.0f + r.p);
 }
 
 /// wo mirrored about h.

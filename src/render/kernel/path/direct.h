@@ -51,7 +51,9 @@ GLOAM_HD Vec3f passing_light_of(const SceneView& scene, const Surface& s, Vec3f 
   const MaterialLayers& m = scene.layers[static_cast<uint32_t>(row)];
   if (m.straight || s.transmission <= 0) return passing;
   float cos_t;
-  const float f = fresnel_dielectric(fabsf(dot(s.normal, d)), m.ior, &cos_t);
+  const float cosine = fabsf(dot(s.normal, d));
+  const float f =
+      m.thin ? fresnel_sheet(cosine, m.ior, &cos_t) : fresnel_dielectric(cosine, m.ior, &cos_t);
   return passing + m.tint * (s.opacity * s.transmission * (1.0f - s.metallic) * (1.0f - f));
 }
 

@@ -164,8 +164,8 @@ GLOAM_HD void apply_layers(const SceneView& scene, const RayHit& hit, const Affi
   }
   if (m.straight) {
     float cos_t;
-    const float f = fresnel_dielectric(fabsf(dot(s->normal, d)), m.ior, &cos_t);
-    s->straight = m.tint * (s->transmission * (1.0f - s->metallic) * (1.0f - f) / (1.0f + f));
+    const float reflects = fresnel_sheet(fabsf(dot(s->normal, d)), m.ior, &cos_t);
+    s->straight = m.tint * (s->transmission * (1.0f - s->metallic) * (1.0f - reflects));
   }
 }
 
