@@ -124,6 +124,7 @@ void print_json(const EvaluateCommand& command, const Evaluation& found) {
                {"align",
                 {{"by", command.align},
                  {"rotation_rows", X.R_AB},
+                 {"rotation_undetermined", X.is_turn_open},
                  {"translation_m", {X.p_AB.x, X.p_AB.y, X.p_AB.z}},
                  {"scale", X.scale}}},
                {"ate", parts_json(found.absolute)},

@@ -71,9 +71,12 @@ struct Similarity {
   RotationRows R_AB = {1, 0, 0, 0, 1, 0, 0, 0, 1};
   Vec3 p_AB = {};
   double scale = 1;
+  /// Positions lie on one line, within a thousandth of its length: the turn about it is
+  /// undetermined, and so are the angle and full parts of absolute errors.
+  bool is_turn_open = false;
 };
-/// Moves the pair's estimate onto its reference; returns by what. Errors: positions on one line or
-/// in one point, which leave the rotation open.
+/// Moves the pair's estimate onto its reference; returns by what. Warns where positions lie on one
+/// line; on an exact one the smallest rotation is taken. Errors: positions in one point.
 Result<Similarity> align(Alignment alignment, TrajectoryPair* pair);
 
 /// Part of the pose E that leads from one trajectory's pose to the other's.

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <Eigen/SVD>
 #include <algorithm>
@@ -9,6 +10,7 @@
 #include <cstdlib>
 #include <limits>
 
+#include "base/log.h"
 #include "trajectory/rigid_pose.h"
 
 namespace gloam {
@@ -50,6 +52,26 @@ Eigen::Vector3d vector_of(const Vec3& v) { return {v.x, v.y, v.z}; }
 
 enum class WithScale : bool { kNo, kYes };
 
+// Second singular value of the covariance, over the first, below which positions count as on one
+// line: they deviate from it by less than a thousandth of its length.
+constexpr double kLine = 1e-6;
+// The same below which the deviations are those of rounding.
+constexpr double kRounding = 1e-13;
+
+// The smallest rotation from one unit vector to another.
+Eigen::Matrix3d least_rotation(const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
+  return Eigen::Quaterniond::FromTwoVectors(from, to).toRotationMatrix();
+}
+
+void warn_of_open_turn(const Trajectory& reference, const Trajectory& estimate) {
+  log_warning(
+      "'{}' and '{}' lie on one line within a thousandth of its length: the turn of the alignment "
+      "about that line is undetermined, and so are the rotation and full parts of the absolute "
+      "error (ATE). Its translation and relative errors (RPE) are determined. Align by 'origin' or "
+      "'none' for rotations",
+      reference.name, estimate.name);
+}
+
 // Least squares of Umeyama 1991, equations 34 to 43.
 Result<Similarity> umeyama(const Trajectory& from, const Trajectory& to, WithScale with_scale) {
   const double n = static_cast<double>(from.size());
@@ -72,16 +94,18 @@ Result<Similarity> umeyama(const Trajectory& from, const Trajectory& to, WithSca
   const Eigen::JacobiSVD<Eigen::Matrix3d> svd(covariance,
                                               Eigen::ComputeFullU | Eigen::ComputeFullV);
   const Eigen::Vector3d d = svd.singularValues();
-  if (!(d[1] > std::numeric_limits<double>::epsilon()))
+  if (!(d[0] > std::numeric_limits<double>::epsilon()))
     return Error{ErrorKind::kInput,
-                 fmt::format("'{}' and '{}' are on one line: their rotation cannot be found",
-                             from.name, to.name),
+                 fmt::format("'{}' or '{}' stays at one point: no rotation can be found", from.name,
+                             to.name),
                  {},
                  "align by their first poses (origin), or not (none)"};
   Eigen::Vector3d sign(1, 1, 1);
   if (svd.matrixU().determinant() * svd.matrixV().determinant() < 0) sign[2] = -1;
-  const Eigen::Matrix3d R = svd.matrixU() * sign.asDiagonal() * svd.matrixV().transpose();
+  Eigen::Matrix3d R = svd.matrixU() * sign.asDiagonal() * svd.matrixV().transpose();
   Similarity out;
+  out.is_turn_open = d[1] <= kLine * d[0];
+  if (d[1] <= kRounding * d[0]) R = least_rotation(svd.matrixV().col(0), svd.matrixU().col(0));
   if (with_scale == WithScale::kYes) out.scale = d.dot(sign) / variance;
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < 3; ++j) out.R_AB[static_cast<size_t>(3 * i + j)] = R(i, j);
@@ -143,6 +167,7 @@ Result<Similarity> align(Alignment alignment, TrajectoryPair* pair) {
     GLOAM_TRY(by, umeyama(moved, pair->reference,
                           alignment == Alignment::kSe3 ? WithScale::kNo : WithScale::kYes));
     if (alignment == Alignment::kScale) by = {.scale = by.scale};
+    if (by.is_turn_open) warn_of_open_turn(pair->reference, moved);
   }
   for (size_t i = 0; i < moved.size(); ++i) {
     moved.positions[i] = rotate(by.R_AB, by.scale * moved.positions[i]) + by.p_AB;

@@ -119,8 +119,13 @@ class Evaluate(ProgramTest):
         later = self.write("later.tum", "".join(f"{i + 100} {i} {i * i} 0 0 0 0 1\n" for i in range(9)))
         line = self.write("line.tum", "".join(f"{i} {i} 0 0 0 0 0 1\n" for i in range(9)))
         bad = self.write("bad.tum", "0 0 0 0 0 0 0 1\n1 nan 0 0 0 0 0 1\n")
-        for estimate, words in ((later, "no poses within"), (line, "one line"), (bad, "bad.tum:2: "), (self.folder / "none.tum", "none.tum")):
+        for estimate, words in ((later, "no poses within"), (bad, "bad.tum:2: "), (self.folder / "none.tum", "none.tum")):
             self.assertIn(words, self.gloam("evaluate", estimate, "--reference", good, expect=1).stderr)
+        straight = self.gloam("evaluate", line, "--reference", line, "--json")
+        self.assertIn("one line", straight.stderr)
+        self.assertIn("undetermined", straight.stderr)
+        self.assertTrue(json.loads(straight.stdout)["align"]["rotation_undetermined"])
+        self.assertAlmostEqual(json.loads(straight.stdout)["ate"]["translation_m"]["rmse"], 0)
         self.assertIn("no two of 9 poses", self.gloam("evaluate", good, "--reference", good, "--rpe-delta", "50", expect=1).stderr)
         self.gloam("evaluate", good, "--reference", good, "--rpe-delta", "0", expect=2)
         self.gloam("evaluate", good, "--reference", good, "--align", "sim4", expect=2)

@@ -83,12 +83,53 @@ TEST(TrajectoryAlign, ByScaleAloneAndByOrigin) {
   EXPECT_LT(absolute_errors(pair, ErrorPart::kAngle)->statistics.max, 1e-7);
 }
 
-TEST(TrajectoryAlign, OfALineSaysThatItsRotationIsOpen) {
-  TrajectoryPair pair = associate(of(line(20, 1)), of(line(20, 1.1))).value();
-  const auto aligned = align(Alignment::kSe3, &pair);
-  ASSERT_FALSE(aligned.ok());
-  EXPECT_THAT(aligned.error().to_string(), HasSubstr("one line"));
-  EXPECT_TRUE(align(Alignment::kOrigin, &pair).ok());
+/// A line of 20 poses along (1, 2, 2) / 3, up to 4 km from the origin, with `off` to the side.
+Trajectory slanted(double step, double off) {
+  std::vector<StampedPose> poses;
+  for (int i = 0; i < 20; ++i) {
+    const double way = step * i / 3, side = off * std::sin(1.7 * i), up = off * std::cos(1.1 * i);
+    poses.push_back(
+        {i * 100'000'000LL, {{4000 + way - 2 * side, 2 * way + side, 2 * way + up}, {}}});
+  }
+  return of(poses);
+}
+
+TEST(TrajectoryAlign, WarnsOfLinesWhoseTurnIsOpen) {
+  for (const auto& [reference, estimate] : {std::pair{slanted(1, 0), of(line(20, 1.1))},
+                                            {of(line(20, 1)), slanted(1, 0)},
+                                            {slanted(1, 0), slanted(1, 0.05)},
+                                            {slanted(100, 0.01), slanted(100, 0.01)}}) {
+    TrajectoryPair pair = associate(reference, estimate).value();
+    testing::internal::CaptureStderr();
+    const auto aligned = align(Alignment::kSe3, &pair);
+    const std::string said = testing::internal::GetCapturedStderr();
+    ASSERT_TRUE(aligned.ok());
+    EXPECT_TRUE(aligned->is_turn_open);
+    EXPECT_THAT(said, HasSubstr("one line"));
+    EXPECT_THAT(said, HasSubstr("undetermined"));
+  }
+}
+
+TEST(TrajectoryAlign, TurnsALineNoMoreThanItMust) {
+  // Equal steps along x and along (1, 2, 2) / 3: an error of 0, a turn of acos(1 / 3).
+  TrajectoryPair pair = associate(slanted(1, 0), of(line(20, 1))).value();
+  const Similarity by = align(Alignment::kSe3, &pair).value();
+  EXPECT_LT(absolute_errors(pair, ErrorPart::kTranslation)->statistics.max, 1e-9);
+  EXPECT_NEAR((by.R_AB[0] + by.R_AB[4] + by.R_AB[8] - 1) / 2, 1.0 / 3, 1e-12);
+}
+
+TEST(TrajectoryAlign, DoesNotWarnWhereTheTurnIsKnown) {
+  testing::internal::CaptureStderr();
+  TrajectoryPair curved = associate(of(helix(80)), of(helix(80))).value();
+  EXPECT_FALSE(align(Alignment::kSe3, &curved)->is_turn_open);
+  TrajectoryPair straight = associate(of(line(20, 1)), of(line(20, 1.1))).value();
+  for (const auto by : {Alignment::kOrigin, Alignment::kNone, Alignment::kScale})
+    EXPECT_TRUE(align(by, &straight).ok());
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+  std::vector<StampedPose> still(5);
+  for (size_t i = 0; i < 5; ++i) still[i].stamp = static_cast<int64_t>(i) * 100'000'000;
+  TrajectoryPair point = associate(of(still), of(still)).value();
+  EXPECT_THAT(align(Alignment::kSe3, &point).error().to_string(), HasSubstr("one point"));
 }
 
 TEST(TrajectoryErrors, OfAStraightLineAtADriftingPaceAreThoseOfThePace) {
