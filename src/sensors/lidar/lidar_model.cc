@@ -44,7 +44,8 @@ void set_optics(const LidarOptions& options, LidarOptics* optics) {
                          static_cast<float>((*options.beam_size)[1])};
   }
   set(&optics->receiver_diameter, options.receiver_diameter);
-  if (options.receiver_diameter) optics->receiver_offset = 0.5f * optics->receiver_diameter;
+  if (options.receiver_diameter || options.beam_size)
+    optics->receiver_offset = offset_of_lenses(*optics);
   set(&optics->receiver_offset, options.receiver_offset);
   if (options.receiver_view) optics->receiver_view = radians(*options.receiver_view);
   set(&optics->resolution, options.pulse_length);

@@ -48,7 +48,7 @@ LidarOptics optics(float min_range, float max_range, double at_10_percent, Vec2f
 void set_apertures(Vec2f beam_mm, float lens_mm, float view, LidarOptics* o) {
   o->beam_size = beam_mm * 1e-3f;
   o->receiver_diameter = 1e-3f * lens_mm;
-  o->receiver_offset = 0.5f * o->receiver_diameter;
+  o->receiver_offset = offset_of_lenses(*o);
   o->receiver_view = view;
 }
 
@@ -79,7 +79,7 @@ LidarModel hdl_64e() {
   m.elevations.insert(m.elevations.end(), upper.begin(), upper.end());
   m.columns = 2083;
   m.optics = optics(0.9f, 120, 50, {0.115f, 0.115f}, 0.75f, 0.02f);
-  set_apertures({10, 10}, 60, 4e-3f, &m.optics);
+  set_apertures({10, 10}, 40, 6e-3f, &m.optics);
   return m;
 }
 
@@ -124,6 +124,10 @@ const LidarPreset* find_lidar_preset(std::string_view name) {
     if (preset.name == name) return &preset;
   }
   return nullptr;
+}
+
+float offset_of_lenses(const LidarOptics& optics) {
+  return 0.5f * optics.receiver_diameter + 0.25f * optics.beam_size.x;
 }
 
 float lidar_threshold(double range) {

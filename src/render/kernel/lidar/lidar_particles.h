@@ -36,15 +36,28 @@ GLOAM_HD float shared_area(float a, float b, float apart) {
   return sqr(a) * (at_a - 0.5f * sinf(2 * at_a)) + sqr(b) * (at_b - 0.5f * sinf(2 * at_b));
 }
 
-/// Share of the light from a place of the beam's axis that a receiver's detector sees, which has
-/// entered its lens: that within half the field of view of the receiver's axis, parallel to the
-/// beam's (geometrical form factor, as in Measures 1984, "Laser remote sensing", 7.2). 0 … 1.
+/// Fraction of the light from a point `aside` m off the receiver's axis that its detector sees, of
+/// what has entered the lens: that within half the field of view of the axis (geometrical form
+/// factor, as in Measures 1984, "Laser remote sensing", 7.2). 0 … 1.
+GLOAM_HD float overlap_of_point(const LidarOptics& optics, float range, float aside) {
+  const float lens = 0.5f * optics.receiver_diameter, seen = 0.5f * optics.receiver_view * range;
+  return shared_area(lens, seen, fabsf(aside)) / (kPi * sqr(lens));
+}
+
+/// The same of the whole beam, which is parallel to the receiver's axis: near by, the side of it
+/// that is turned to the lens is seen first. Mean over the Gaussian profile across, as it leaves
+/// the sensor, by Gauss and Hermite's quadrature with three points. The field of view is that of a
+/// beam as it diverges.
 GLOAM_HD float overlap(const LidarOptics& optics, float range) {
   const float lens = 0.5f * optics.receiver_diameter;
   if (!(lens > 0)) return 1;
-  const float seen = 0.5f * optics.receiver_view * range;
-  if (seen >= optics.receiver_offset + lens) return 1;
-  return shared_area(lens, seen, optics.receiver_offset) / (kPi * sqr(lens));
+  const float across = 0.4330127f * optics.beam_size.x;  // sqrt(3) standard deviations
+  const float middle = optics.receiver_offset;
+  if (0.5f * optics.receiver_view * range >= middle + across + lens) return 1;
+  return (4 * overlap_of_point(optics, range, middle) +
+          overlap_of_point(optics, range, middle - across) +
+          overlap_of_point(optics, range, middle + across)) *
+         (1.0f / 6);
 }
 
 /// Signal of a particle, but for what dims it. `rho2`: squared distance from the beam's axis, in
