@@ -26,11 +26,15 @@ struct VehicleSize {
   double mass = 0;  ///< [kg]
   /// Least turning radius of the middle of its unsteered axle [m]; 0 = turns there.
   double turning_radius = 0;
-  bool steers_rear = false;  ///< else by the front wheels
+  bool steers_rear = false;           ///< else by the front wheels
+  double thrust = 1.2, brakes = 2.2;  ///< accelerations that a driver uses [m/s²]
 };
 
 /// Hatchback of the B segment: 3.97 x 1.68 x 1.46 m on a wheelbase of 2.47 m, tyres 185/60 R 15,
-/// 10.6 m between kerbs, some 1.1 t (Volkswagen AG 2014, Polo, technical data).
+/// 10.6 m between kerbs, some 1.1 t (Volkswagen AG 2014, Polo, technical data). Drivers accelerate
+/// from rest with some 2 m/s² (Bokare and Maurya 2017, "Acceleration-deceleration behaviour of
+/// various vehicle types") and brake with up to 3.4 m/s² (AASHTO 2011, "A policy on geometric
+/// design of highways and streets", 3.2.2).
 inline constexpr VehicleSize kCarSize{1.985f,
                                       -1.985f,
                                       1.68f,
@@ -39,7 +43,9 @@ inline constexpr VehicleSize kCarSize{1.985f,
                                       {-1.235f, 1.46f, 0.302f, 0.185f},
                                       1100,
                                       3.9,
-                                      false};
+                                      false,
+                                      2.0,
+                                      3.4};
 /// Counterbalance truck with forks of 1.15 m: sheets of makers after VDI 2198 have 1.15 m of width,
 /// 2.1 m of height and 3 to 4 t for 1.6 to 2.5 t of load; steers by its rear wheels, up to 68
 /// degrees.

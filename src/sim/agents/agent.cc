@@ -1,5 +1,7 @@
 #include "sim/agents/agent.h"
 
+#include <limits>
+
 #include "base/hash.h"
 
 namespace gloam {
@@ -141,11 +143,55 @@ AgentSpline::AgentSpline(const std::vector<WaypointOptions>& route, bool loops) 
     lengths.push_back(lengths.back() + norm(points[i] - points[i - 1]));
 }
 
+double AgentSpline::wrapped_way(double way) const {
+  return loop && length() > 0 ? way - length() * std::floor(way / length())
+                              : std::clamp(way, 0.0, length());
+}
+
+// The later end of the piece that a way lies on.
+size_t AgentSpline::row_after(double way) const {
+  return static_cast<size_t>(std::upper_bound(lengths.begin() + 1, lengths.end() - 1, way) -
+                             lengths.begin());
+}
+
+void AgentSpline::plan_speeds(const VehicleSize& size) {
+  constexpr double kCreep = 0.3;  // [m/s]
+  const size_t n = points.size();
+  if (n < 2) return;
+  speeds.assign(n, std::numeric_limits<double>::infinity());
+  const double tightest = size.turning_radius > 0 ? 1 / size.turning_radius : 2;
+  for (size_t i = loop ? 0 : 1; i + 1 < n; ++i) {
+    const Vec3d before = points[i] - points[i > 0 ? i - 1 : n - 2],
+                after = points[i + 1] - points[i];
+    const double turn = wrapped(std::atan2(after.y, after.x) - std::atan2(before.y, before.x));
+    const double way = 0.5 * (flat_norm(before) + flat_norm(after));
+    if (way > 0) speeds[i] = bend_speed(std::min(std::abs(turn) / way, tightest));
+  }
+  speeds[n - 1] = loop ? speeds[0] : kCreep;
+  // Twice, so that a loop's first bends slow down its end.
+  for (int round = 0; round < (loop ? 2 : 1); ++round) {
+    for (size_t i = n - 1; i-- > 0;) {
+      const double way = lengths[i + 1] - lengths[i];
+      speeds[i] = std::min(
+          speeds[i], std::sqrt(speeds[i + 1] * speeds[i + 1] + 2 * planned_slowing(size) * way));
+    }
+    if (loop) speeds[n - 1] = speeds[0];
+  }
+}
+
+double AgentSpline::speed_at(double way) const {
+  if (speeds.empty()) return std::numeric_limits<double>::infinity();
+  way = wrapped_way(way);
+  const size_t i = row_after(way);
+  const double piece = lengths[i] - lengths[i - 1];
+  const double t = piece > 0 ? (way - lengths[i - 1]) / piece : 0;
+  if (!std::isfinite(speeds[i - 1]) || !std::isfinite(speeds[i])) return speeds[i];
+  return speeds[i - 1] + (speeds[i] - speeds[i - 1]) * t;
+}
+
 Vec3d AgentSpline::at(double way, Vec3d* direction) const {
-  way = loop && length() > 0 ? way - length() * std::floor(way / length())
-                             : std::clamp(way, 0.0, length());
-  const auto next = std::upper_bound(lengths.begin() + 1, lengths.end() - 1, way) - lengths.begin();
-  const auto i = static_cast<size_t>(next);
+  way = wrapped_way(way);
+  const size_t i = row_after(way);
   const Vec3d a = points[i - 1], b = points[i];
   const double piece = lengths[i] - lengths[i - 1];
   *direction = unit_or(b - a, {1, 0, 0});

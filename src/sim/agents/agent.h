@@ -83,10 +83,19 @@ struct AgentSpline {
   double length() const { return lengths.back(); }
   /// At a way along it [m]; the direction there too.
   Vec3d at(double way, Vec3d* direction) const;
+  /// Plans at which speeds a vehicle takes its bends, and stops at its end.
+  void plan_speeds(const VehicleSize& size);
+  /// Speed that is planned at a way along it [m/s]; without a plan infinite.
+  double speed_at(double way) const;
 
   std::vector<Vec3d> points;    ///< close to each other
   std::vector<double> lengths;  ///< up to each [m]
+  std::vector<double> speeds;   ///< planned at each [m/s]; empty = any
   bool loop = false;
+
+ private:
+  double wrapped_way(double way) const;
+  size_t row_after(double way) const;
 };
 
 }  // namespace gloam

@@ -53,6 +53,8 @@ Status Agents::prepare(Rational timestep, const mjModel& m, const mjData& data) 
     agents_.emplace_back(d);
     splines_.push_back(d.behavior == AgentBehavior::kSpline ? AgentSpline(d.route, d.loop)
                                                             : AgentSpline());
+    if (d.behavior == AgentBehavior::kSpline && d.kind != AgentKind::kPerson)
+      splines_.back().plan_speeds(d.vehicle);
   }
   map_geoms(m);
   GLOAM_TRY_STATUS(read_trees());

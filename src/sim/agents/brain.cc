@@ -203,9 +203,10 @@ class Brain final : public TreeHost {
   void follow_spline() {
     const AgentSpline& spline = around_.splines[row_];
     Vec3d direction;
-    const double speed = agent_.description->speed;
-    const double behind = flat_norm(spline.at(motion_.way, &direction) - motion_.p);
-    // It waits for a body that was held up.
+    const double speed = std::min(agent_.description->speed, spline.speed_at(motion_.way));
+    const Vec3d lag = flat(spline.at(motion_.way, &direction) - motion_.p);
+    // It waits for a body that was held up; one that is ahead of it need not wait.
+    const double behind = norm(lag - flat(direction) * std::min(dot(lag, flat(direction)), 0.0));
     motion_.way += norm(motion_.wanted) > 0 || motion_.way == 0
                        ? speed * around_.dt * std::clamp(1.5 - behind, 0.0, 1.0)
                        : 0;

@@ -1,5 +1,8 @@
 // Steering of agents: along the path, around others.
 
+#include <limits>
+#include <span>
+
 #include "sim/agents/agents.h"
 #include "sim/agents/brain.h"
 
@@ -11,7 +14,6 @@ constexpr double kPersonal = 0.05;  // beyond radii [m]
 constexpr double kHorizon = 0.7;    // within which a collision makes it stop [s]
 constexpr double kGap = 0.6;        // gap that a vehicle leaves in front [m]
 constexpr double kBeside = 0.15;    // and to its sides [m]
-constexpr double kSlowing = 1.2;    // deceleration of vehicles that see something coming [m/s²]
 
 struct Nearby {
   Vec3d p, velocity, wanted;
@@ -31,15 +33,23 @@ void for_circles(const AgentBody& agent, const F& f) {
     f(agent.motion.p + ahead * (from + (to - from) * k / gaps), half + 0.1);
 }
 
-// At which a vehicle may go so that it takes the next corner of its way as slowly as its circle is
+// At which a vehicle may go so that it takes the next corners of its way as slowly as its circle is
 // tight.
-double corner_speed(const AgentBody& agent, Vec3d corner, Vec3d next) {
-  const Vec3d to = flat(corner - agent.motion.p), on = flat(next - corner);
-  const double turn = std::acos(
-      std::clamp(dot(unit_or(to, {1, 0, 0}), unit_or(on, unit_or(to, {1, 0, 0}))), -1.0, 1.0));
-  const double radius = std::max(agent.description->vehicle.turning_radius, 0.5);
-  const double slow = bend_speed(std::min(turn, 1.0) / radius);
-  return std::sqrt(slow * slow + 2 * kSlowing * norm(to));
+double corner_speed(const AgentBody& agent, std::span<const Vec3d> corners) {
+  const VehicleSize& size = agent.description->vehicle;
+  const double radius = std::max(size.turning_radius, 0.5);
+  double fastest = std::numeric_limits<double>::infinity(), way = 0;
+  Vec3d from = agent.motion.p;
+  for (size_t i = 0; i + 1 < corners.size(); ++i) {
+    const Vec3d to = flat(corners[i] - from), on = flat(corners[i + 1] - corners[i]);
+    const Vec3d ahead = unit_or(to, {1, 0, 0});
+    const double turn = std::acos(std::clamp(dot(ahead, unit_or(on, ahead)), -1.0, 1.0));
+    const double slow = bend_speed(std::min(turn, 1.0) / radius);
+    way += norm(to);
+    fastest = std::min(fastest, std::sqrt(slow * slow + 2 * planned_slowing(size) * way));
+    from = corners[i];
+  }
+  return fastest;
 }
 
 }  // namespace
@@ -65,13 +75,11 @@ Vec3d Agents::steer(size_t row, const mjData& data) {
     if (count == 0) return {};
     const Vec3d to = flat(corners[0] - m.p);
     const double left = flat_norm(agent.path.end() - m.p);
-    // Slows down so that it can stop where the way ends, 0.9 m/s² (twice what is left under a
-    // root).
+    // Slows down so that it can stop where the way ends, with 0.9 m/s².
     const double speed = std::min(intent.speed, std::sqrt(2 * 0.9 * std::max(left - 0.1, 0.0)));
     wanted = unit_or(to, heading_vector(m.heading)) * speed;
     if (left < 0.12) return {};
-    if (drives && count > 1)
-      wanted = shortened(wanted, corner_speed(agent, corners[0], corners[1]));
+    if (drives) wanted = shortened(wanted, corner_speed(agent, {corners, size_t(count)}));
   }
   if (!d.yields) return wanted;
   if (doors_->is_blocked(data, m)) return {};
@@ -151,7 +159,7 @@ double Agents::free_speed(size_t row) const {
   const VehicleSize& size = agent.description->vehicle;
   const Vec3d ahead = heading_vector(m.heading), left{-ahead.y, ahead.x, 0};
   const double lane = static_cast<double>(size.width) / 2 + kBeside;
-  double free = kLook;
+  double free = std::numeric_limits<double>::infinity();
   const auto look = [&](Vec3d q, Vec3d velocity, double radius) {
     for (const double later : {0.0, 0.5, 1.0}) {
       const Vec3d to = flat(q + velocity * later - m.p);
@@ -166,7 +174,7 @@ double Agents::free_speed(size_t row) const {
                   [&](Vec3d q, double radius) { look(q, agents_[i].motion.velocity, radius); });
   for (const NavObstacle& o : nav_->obstacles())
     if (!o.is_in_mesh || o.is_robot) look(o.p, flat(o.velocity), o.radius);
-  return std::sqrt(2 * kSlowing * std::max(free - kGap, 0.0));
+  return std::sqrt(2 * planned_slowing(size) * std::max(free - kGap, 0.0));
 }
 
 }  // namespace gloam

@@ -3,9 +3,8 @@
 namespace gloam {
 namespace {
 
-// Electric lift trucks and cars are driven at up to 1.5 m/s² in yards; passengers find 2 m/s² to
-// the side comfortable (Bosetti et al. 2014).
-constexpr double kThrust = 1.2, kBrakes = 2.2, kLateral = 1.8;  // [m/s²]
+// Passengers find 2 m/s² to the side comfortable (Bosetti et al. 2014).
+constexpr double kLateral = 1.8;    // [m/s²]
 constexpr double kSteerRate = 0.8;  // rate of the wheels' steering [rad/s]
 constexpr double kLookTime = 0.8;   // ahead of which a driver looks [s]
 constexpr double kSpin = 1.2;       // rate of vehicles that turn on the spot [rad/s]
@@ -48,7 +47,7 @@ void drive(const VehicleSize& size, double dt, Vec3d wanted, Vec3d* velocity, do
       target =
           std::min(target, bend_speed(std::max(std::abs(curvature), std::abs(state->curvature))));
   }
-  const double change = target > speed ? kThrust : kBrakes;
+  const double change = target > speed ? size.thrust : size.brakes;
   const double now = speed + std::clamp(target - speed, -change * dt, change * dt);
   if (spins) {
     const double rate = most > 0.02 ? std::clamp(2.5 * error, -kSpin, kSpin) : 0;

@@ -28,6 +28,10 @@ inline double length_behind(const VehicleSize& size) {
   return axle_middle(size) - static_cast<double>(size.rear);
 }
 
+/// Deceleration with which drivers plan to slow down [m/s²]: what is left of the brakes is for what
+/// they do not foresee.
+inline double planned_slowing(const VehicleSize& size) { return 0.55 * size.brakes; }
+
 /// Speed at which a bend of that curvature is taken [m/s].
 double bend_speed(double curvature);
 

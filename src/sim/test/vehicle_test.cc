@@ -116,6 +116,89 @@ TEST(Vehicle, StaysOnItsWayAndSlowsInBends) {
   EXPECT_LT(flat_norm(motion_of(*stepper, 0).p - Vec3d{8, 9, 0}), 1.5);
 }
 
+/// A road along x and a bend to y at its end.
+std::vector<WaypointOptions> road(double length) {
+  return {{{0, 0, 0}, 0, {}}, {{length / 2, 0, 0}, 0, {}}, {{length, 0, 0}, 0, {}}};
+}
+
+// v²/2a to speed up, and as far as planned to stop.
+TEST(Vehicle, CarsReachTheSpeedsThatTheyAreGiven) {
+  for (const double speed : {8.0, 14.0, 30.0}) {
+    SCOPED_TRACE(speed);
+    AgentRig rig(
+        "<mujoco><option timestep='0.002'/><worldbody>"
+        "<geom type='plane' size='800 20 0.1'/></worldbody></mujoco>");
+    rig.scene.navigation.cell = 1;
+    const double length = 1.5 * speed * speed / (2 * kCarSize.thrust) +
+                          1.2 * speed * speed / (2 * 0.55 * kCarSize.brakes) + 2 * speed;
+    add_vehicle(&rig, "car", {0, 0, 0}, road(length), "spline").speed = speed;
+    auto stepper = rig.stepper();
+    double fastest = 0, at_half = 0;
+    const double until = speed / kCarSize.thrust + length / speed + 12;
+    for (int i = 0; i * kStep < until; ++i) {
+      ASSERT_TRUE(stepper->step());
+      const double now = norm(motion_of(*stepper, 0).velocity);
+      fastest = std::max(fastest, now);
+      if (i * kStep < 0.5 * speed / kCarSize.thrust) at_half = now;
+    }
+    EXPECT_NEAR(fastest / speed, 1, 0.05);
+    EXPECT_NEAR(at_half / (speed / 2), 1, 0.1) << "v = a t";
+    EXPECT_NEAR(motion_of(*stepper, 0).p.x, length, 1.5) << "it stops at the end of its way";
+    EXPECT_NEAR(motion_of(*stepper, 0).p.y, 0, 0.3);
+    EXPECT_LT(norm(motion_of(*stepper, 0).velocity), 0.1);
+  }
+}
+
+TEST(Vehicle, FastCarsSlowDownBeforeBendsAndStopForPeople) {
+  AgentRig rig(
+      "<mujoco><option timestep='0.002'/><worldbody>"
+      "<geom type='plane' size='300 300 0.1'/></worldbody></mujoco>");
+  rig.scene.navigation.cell = 1;
+  add_vehicle(&rig, "car", {0, 0, 0},
+              {{{0, 0, 0}, 0, {}},
+               {{100, 0, 0}, 0, {}},
+               {{160, 0, 0}, 0, {}},
+               {{180, 20, 0}, 0, {}},
+               {{180, 80, 0}, 0, {}},
+               {{180, 180, 0}, 0, {}}},
+              "spline")
+      .speed = 15;
+  rig.add("ann", {180, 150, 0}, "stand").speed = 1;
+  auto stepper = rig.stepper();
+  const AgentSpline spline(rig.scene.agents[0].route, false);
+  double off = 0, fastest = 0, sideways = 0;
+  for (int i = 0; i * kStep < 40; ++i) {
+    ASSERT_TRUE(stepper->step());
+    if (i % 50 != 0) continue;
+    const AgentMotion& m = motion_of(*stepper, 0);
+    off = std::max(off, to_spline(spline, m.p));
+    fastest = std::max(fastest, norm(m.velocity));
+    sideways = std::max(sideways, std::abs(norm(m.velocity) * m.yaw_rate));
+  }
+  EXPECT_GT(fastest, 14);
+  EXPECT_LT(off, 1);
+  EXPECT_LT(sideways, 2.7);
+  const double gap = 150 - motion_of(*stepper, 0).p.y - length_ahead(kCarSize) - 0.3;
+  EXPECT_GT(gap, 0.3) << "it stands before her";
+  EXPECT_LT(gap, 2);
+}
+
+TEST(Vehicle, RoutesAreDrivenFastToo) {
+  AgentRig rig(
+      "<mujoco><option timestep='0.002'/><worldbody>"
+      "<geom type='plane' size='150 10 0.1'/></worldbody></mujoco>");
+  rig.scene.navigation.cell = 0.5;
+  add_vehicle(&rig, "car", {-140, 0, 0}, {{{140, 0, 0}, 0, {}}}, "route").speed = 14;
+  auto stepper = rig.stepper();
+  double fastest = 0;
+  for (int i = 0; i * kStep < 35; ++i) {
+    ASSERT_TRUE(stepper->step());
+    fastest = std::max(fastest, norm(motion_of(*stepper, 0).velocity));
+  }
+  EXPECT_NEAR(fastest, 14, 0.7);
+  EXPECT_NEAR(motion_of(*stepper, 0).p.x, 140, 1.5);
+}
+
 TEST(Vehicle, RoutesLeadThroughAGap) {
   AgentRig rig(
       agent_place("<geom type='box' size='0.1 4.5 1' pos='0 -7 1'/>"
