@@ -8,6 +8,7 @@
 #include "base/log.h"
 #include "scene/files/mujoco_guard.h"
 #include "sim/agents/brain.h"
+#include "sim/loop/step_halves.h"
 #include "sim/state/initial_state.h"
 
 namespace gloam {
@@ -63,6 +64,8 @@ Status Agents::prepare(Rational timestep, const mjModel& m, const mjData& data) 
 }
 
 void Agents::map_geoms(const mjModel& m) {
+  contacts_ = std::make_unique<BodyContacts>(*world_, m);
+  softens_ = contacts_->any() && has_halves(m);
   agent_of_geom_.assign(static_cast<size_t>(m.ngeom), -1);
   is_robot_geom_.assign(static_cast<size_t>(m.ngeom), false);
   for (size_t row = 0; row < agents_.size(); ++row) {
@@ -241,6 +244,10 @@ void Agents::take_over(const EffectContext& at, Effect* other) {
     for (size_t part = static_cast<size_t>(agent.description->parts()); part < kPersonParts; ++part)
       agent.before[part] = agent.after[part];
   }
+}
+
+void Agents::apply_loads(const EffectContext& at) {
+  if (at.is_halved) contacts_->soften(at.model, &at.data);
 }
 
 void Agents::read_contacts(const mjModel& m, const mjData& data) {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "sim/agents/agent.h"
+#include "sim/agents/body_contact.h"
 #include "sim/agents/doors.h"
 #include "sim/effects/effect.h"
 #include "sim/loop/step_schedule.h"
@@ -22,6 +23,9 @@ class Agents final : public Effect {
 
   std::string_view kind() const override { return "agents"; }
   bool moves_bodies() const override { return true; }
+  /// People are softer than what MuJoCo knows of its contacts.
+  bool acts_on_bodies() const override { return softens_; }
+  void apply_loads(const EffectContext& at) override;
   void reset(const EffectContext& at) override;
   /// Goes on with those of the same name, kind and seed; the others begin.
   void take_over(const EffectContext& at, Effect* before) override;
@@ -66,6 +70,8 @@ class Agents final : public Effect {
   std::vector<AgentBody> agents_;
   std::vector<AgentSpline> splines_;  // by agent; empty ones too
   std::vector<int> agent_of_geom_;    // -1 = none's
+  std::unique_ptr<BodyContacts> contacts_;
+  bool softens_ = false;  // there are people, and steps have halves
   std::vector<bool> is_robot_geom_;
   std::vector<std::array<bool, 2>> planted_;  // feet of agents, at the step before
 };
