@@ -37,15 +37,6 @@ InstantEncoder weather(const TopicSource& world) {
   };
 }
 
-// Heat that a fire has released until `time` [J]: the integral of power_at.
-double heat_until(const GasSourceDescription& fire, double time) {
-  const double burning = std::clamp(time, fire.start, fire.stop) - fire.start;
-  const double power = double{fire.power}, growth = double{fire.growth};
-  if (growth <= 0) return power * burning;
-  const double growing = std::min(burning, std::sqrt(power / growth));
-  return growth * growing * growing * growing / 3 + power * (burning - growing);
-}
-
 // Numbers of the field of the gas's last tick, cell by cell in their order.
 void read_field(const GasDescription& gas, const FieldWindow& window, gloam_msgs::Gas* to) {
   to->highest_temperature = to->mean_temperature = double{gas.temperature};
@@ -81,7 +72,7 @@ InstantEncoder gas_numbers(size_t row) {
       const Vec3f& p = fire.X_BS.p;
       if (!gas.holds(product(X_WB, {{p.x, p.y, p.z}, {}}).p)) continue;
       if (fire.is_on(time)) message.heat_release += double{fire.power_at(time)};
-      message.heat_released += heat_until(fire, time);
+      message.heat_released += fire.heat_until(time);
     }
     const double per_joule =
         gas.fuel.heat_of_combustion > 0 ? 1 / double{gas.fuel.heat_of_combustion} : 0;

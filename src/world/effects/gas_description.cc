@@ -195,6 +195,25 @@ float GasSourceDescription::power_at(double time) const {
   return growth > 0 ? min(power, growth * since * since) : power;
 }
 
+double GasSourceDescription::heat_until(double time) const {
+  const double burning = std::clamp(time, start, std::max(start, stop)) - start;
+  const double most = double{power}, rate = double{growth};
+  if (rate <= 0) return most * burning;
+  const double growing = std::min(burning, std::sqrt(most / rate));
+  return rate * growing * growing * growing / 3 + most * (burning - growing);
+}
+
+float GasSourceDescription::mean_power(double from, double to) const {
+  if (from >= start && to <= stop && power_at(from) == power) return power;
+  return static_cast<float>((heat_until(to) - heat_until(from)) / (to - from));
+}
+
+float GasSourceDescription::share_on(double from, double to) const {
+  if (from >= start && to <= stop) return 1;
+  return static_cast<float>(std::max(std::min(to, stop) - std::max(from, start), 0.0) /
+                            (to - from));
+}
+
 Result<GasesDescription> describe_gases(const CompiledWorld& world) {
   const Scene& scene = world.scene;
   GasesDescription out;

@@ -38,6 +38,11 @@ struct GasSourceDescription {
   /// Heat released by a fire at a time [W].
   float power_at(double time) const;
   bool is_on(double time) const { return time >= start && time < stop; }
+  /// Heat that a fire has released until `time` [J]: the integral of power_at.
+  double heat_until(double time) const;
+  /// Means over an interval: of power_at [W], and of is_on as 0 or 1.
+  float mean_power(double from, double to) const;
+  float share_on(double from, double to) const;
 };
 
 /// A disc that drives air against its thrust.

@@ -110,6 +110,23 @@ stop = 400
   EXPECT_NEAR(fire.power_at(110), 0.0469e3 * 1e4, 1);  // NFPA 72: 1055 kW after 150 s
   EXPECT_NEAR(fire.power_at(160), 1e6, 1);
   EXPECT_EQ(fire.power_at(400), 0);
+  // Means over intervals, in which it begins, grows, has grown and ends, against sums.
+  for (const auto& [from, to] : {std::pair{9.5, 10.5},
+                                 {9.0, 9.5},
+                                 {50.0, 50.1},
+                                 {150.0, 170.0},
+                                 {200.0, 200.1},
+                                 {300.0, 500.0}}) {
+    double sum = 0, on = 0;
+    constexpr int n = 20000;
+    for (int i = 0; i < n; ++i) {
+      const double t = from + (to - from) * (i + 0.5) / n;
+      sum += static_cast<double>(fire.power_at(t)) / n;
+      on += fire.is_on(t) ? 1.0 / n : 0;
+    }
+    EXPECT_NEAR(fire.mean_power(from, to), sum, 1 + 1e-4 * sum) << from;
+    EXPECT_NEAR(fire.share_on(from, to), on, 2.0 / n) << from;
+  }
 }
 
 TEST_F(Gas, IsAVolumeOfThePicture) {

@@ -207,9 +207,9 @@ void GasEffect::solve(const Snapshot& now, std::span<const DustDeposit> deposits
   // MuJoCo took this state when it stepped to it; where it does not now, walls stay as they were.
   if (obstacles_->solve(now, &walls_).ok() && (first || obstacles_->changed()))
     solver_->set_walls(walls_);
-  find_sources(now.time());
   const int64_t steps = schedule_.step_of(tick_ + 1) - schedule_.step_of(tick_);
   const double interval = static_cast<double>(steps) * timestep_;
+  find_sources(now.time(), now.time() + interval);
   if (rotor_thrust_ != nullptr && !rotor_thrust_->solve(now, &rotors_).ok()) rotors_.clear();
   std::span<const GasEmission> dust;
   if (ground_dust_ != nullptr)
@@ -220,18 +220,20 @@ void GasEffect::solve(const Snapshot& now, std::span<const DustDeposit> deposits
   warn_of_blocked(step);
 }
 
-void GasEffect::find_sources(double time) {
+/// Sources give in each interval what is theirs in it, from whichever instant they are on.
+void GasEffect::find_sources(double from, double to) {
   sources_.clear();
   for (const GasSourceDescription& in : world_->gases.sources) {
-    if (!in.is_on(time)) continue;
+    const float share = in.share_on(from, to);
+    if (!(share > 0)) continue;
     GasSource out;
     const Affine3f X_WB = obstacles_->X_WB(in.body);
     out.X_WS = X_WB * in.X_BS;
     out.box = true;
     out.half_size = in.half_size;
-    out.fuel = in.power_at(time) / gas().fuel.heat_of_combustion;
-    out.smoke = in.smoke;
-    out.heat = in.heat;
+    out.fuel = in.mean_power(from, to) / gas().fuel.heat_of_combustion;
+    out.smoke = in.smoke * share;
+    out.heat = in.heat * share;
     out.blows = in.jet.has_value();
     if (in.jet) out.velocity = transform_vector(X_WB, *in.jet);
     sources_.push_back(out);

@@ -52,7 +52,7 @@ class GasEffect {
   void run_thread();
   void solve(const Snapshot& now, std::span<const DustDeposit> deposits);
   void read_field(MediumField* to) const;
-  void find_sources(double time);
+  void find_sources(double from, double to);
   Vec3f wind(double time) const;
   void warn_of_blocked(const GasStep& step);
 
