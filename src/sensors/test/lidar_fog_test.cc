@@ -11,7 +11,7 @@
 namespace gloam {
 namespace {
 
-constexpr size_t k905 = static_cast<size_t>(MediumBand::k905nm);
+constexpr size_t kBandOf905 = static_cast<size_t>(MediumBand::k905nm);
 
 /// Fog around a sensor 2 m up, and a wall of 50 % at 20 m ahead.
 SceneBuilder foggy_wall(double visibility) {
@@ -55,7 +55,7 @@ Ends ends_of(const std::string& preset, double visibility, const char* returns, 
 double fog_over_threshold(const LidarOptics& o, double visibility) {
   const MediumDescription& fog = *find_medium("fog");
   const double k =
-      kKoschmieder / visibility * static_cast<double>(fog.mass_extinction[k905]) /
+      kKoschmieder / visibility * static_cast<double>(fog.mass_extinction[kBandOf905]) /
       static_cast<double>(fog.mass_extinction[static_cast<size_t>(MediumBand::kGreen)]);
   const auto bin = static_cast<double>(o.resolution);
   double most = 0;

@@ -20,9 +20,9 @@ constexpr double kInWalls = 0.1;       // [m] of what hangs in rooms beyond thei
 constexpr float kBillowReach = 480;    // [m] to each side of the middle, in which fog billows
 constexpr int kAlong = 192;            // voxels of billows along an edge
 constexpr float kPerScaleHeight = 32;  // voxels of a profile without billows
-constexpr float kVoxel = 0.5f;         // edge of a voxel under roofs, at least [m]
-constexpr int kMostVoxels = 256;       // along an edge
-constexpr float kHead = 1.5f;          // height over the lowest ground of what is a roof [m]
+constexpr float kRoofVoxel = 0.5f;     // edge of a voxel under roofs, at least [m]
+constexpr int kMostRoofVoxels = 256;   // along an edge
+constexpr float kRoofHeight = 1.5f;    // height over the lowest ground of what is a roof [m]
 
 struct Box {
   Vec3f low, high;
@@ -90,7 +90,7 @@ bool find_roofs(const ShelterMap& map, Box* roofs) {
     for (int i = 0; i < map.nx; ++i) {
       const float top =
           map.height[static_cast<size_t>(j) * static_cast<size_t>(map.nx) + static_cast<size_t>(i)];
-      if (!(top > map.lowest + kHead)) continue;
+      if (!(top > map.lowest + kRoofHeight)) continue;
       const float x = map.low.x + map.cell * static_cast<float>(i);
       const float y = map.low.y + map.cell * static_cast<float>(j);
       roofs->low = {std::min(roofs->low.x, x), std::min(roofs->low.y, y), roofs->low.z};
@@ -188,7 +188,7 @@ void add_falling(const ParticleSet& particles, const WeatherOptions& options,
   Box roofs;
   if (!find_roofs(map, &roofs)) return add(all);
   const float edge = std::max(roofs.high.x - roofs.low.x, roofs.high.y - roofs.low.y);
-  const float voxel = std::max(kVoxel, edge / kMostVoxels);
+  const float voxel = std::max(kRoofVoxel, edge / kMostRoofVoxels);
   roofs = {roofs.low - Vec3f{voxel, voxel, 0}, roofs.high + Vec3f{voxel, voxel, voxel}};
   VolumeDescription sheltered = volume_of(roofs, name, row, particles.water);
   set_open(map.view(), voxel, roofs, &sheltered);

@@ -10,10 +10,10 @@
 namespace gloam {
 namespace {
 
-constexpr int kLog2Most = 14;        // paths, at most
-constexpr int kBatch = 1024;         // paths between two looks at the error
-constexpr double kError = 0.005;     // standard error over the mean at which the measurement ends
-constexpr float kConeSpread = 0.2f;  // of the paths' rays: no fine texture is sought
+constexpr int kLog2Most = 14;       // paths, at most
+constexpr int kBatch = 1024;        // paths between two looks at the error
+constexpr double kError = 0.005;    // standard error over the mean at which the measurement ends
+constexpr float kBroadCone = 0.2f;  // of the paths' rays: no fine texture is sought
 
 /// Irradiance [lx per channel] of one light sample and one path from p, weighted against each other
 /// like at any vertex of the path stage: p is a vertex on a white Lambertian surface.
@@ -24,7 +24,7 @@ Vec3f sample_irradiance(const SceneView& scene, const CpuTracer& tracer, Vec3f p
   path.light_sampler.keep_in(&probabilities);
   paths::CameraSampleOf<float> start;
   start.ray.o = p;
-  start.cone_spread = kConeSpread;
+  start.cone_spread = kBroadCone;
   start.sampler = sampler;
   path.start(start, true);
   path.depth = 1;
