@@ -79,7 +79,7 @@ uint64_t Place::hash() const {
     pictures[static_cast<size_t>(i)] =
         hash_span<uint8_t>(picture.empty() ? std::span<const uint8_t>() : picture.image().texels);
   });
-  constexpr int kWriter = 3;  // counts changes of what place_writer makes of the same place
+  constexpr int kWriter = 4;  // counts changes of what place_writer makes of the same place
   ArchiveWriter out;
   out(kWriter);
   out(name);

@@ -4,12 +4,11 @@
 
 #include <cmath>
 #include <map>
-#include <set>
 #include <tuple>
 
 #include "base/check.h"
 #include "places/writer/height_field_spec.h"
-#include "places/writer/spec_edit.h"
+#include "places/writer/place_looks.h"
 #include "places/writer/spec_geom.h"
 
 namespace gloam {
@@ -70,21 +69,38 @@ class PlaceWriter {
       geom->friction[0] = ground.friction;
     }
     for (const Placement& placement : place_.placements()) {
-      GLOAM_TRY_STATUS(check_name(placement.name, placement.loc));
+      GLOAM_TRY_STATUS(check_names(placement));
       add_placement(placement);
     }
     for (const Scatter& scatter : place_.scatters()) {
-      GLOAM_TRY_STATUS(check_name(scatter.name, {}));
+      GLOAM_TRY_STATUS(check_name(mjOBJ_BODY, scatter.name, {}));
       add_scatter(scatter);
     }
     return {};
   }
 
  private:
-  Status check_name(const std::string& body, const SourceLoc& loc) const {
-    if (mjs_findBody(spec_, body.c_str()) == nullptr) return {};
-    return Error{ErrorKind::kInput, fmt::format("the environment has a body '{}' already", body),
+  Status check_name(mjtObj type, const std::string& text, const SourceLoc& loc) const {
+    if (mjs_findElement(spec_, type, text.c_str()) == nullptr) return {};
+    return Error{ErrorKind::kInput,
+                 fmt::format("the environment has a {} '{}' already",
+                             type == mjOBJ_BODY ? "body" : "joint", text),
                  loc, "rename what the scene adds"};
+  }
+
+  // Bodies and joints are looked up by their names, which must therefore be these.
+  Status check_names(const Placement& placement) const {
+    for (const PropPart& part : place_.prop(placement.prop).parts) {
+      const std::string body = body_name_of(placement, part);
+      GLOAM_TRY_STATUS(check_name(mjOBJ_BODY, body, placement.loc));
+      if (part.joint || (placement.loose && part.parent < 0))
+        GLOAM_TRY_STATUS(check_name(mjOBJ_JOINT, body, placement.loc));
+    }
+    return {};
+  }
+
+  static std::string body_name_of(const Placement& placement, const PropPart& part) {
+    return part.parent < 0 ? placement.name : placement.name + "/" + part.name;
   }
 
   static void name(mjsElement* element, const std::string& text) {
@@ -92,20 +108,20 @@ class PlaceWriter {
   }
 
   void add_material(const Look& look) {
-    mjsMaterial* material = edit(mjs_addMaterial, spec_, nullptr);
-    name(material->element, look.name);
+    const std::string& written = looks_[look.name] = free_look_name(look.name, spec_);
+    mjsMaterial* material = mjs_addMaterial(spec_, nullptr);
+    name(material->element, written);
     if (!look.picture.empty()) {
       const Image8& image = look.picture.image();
-      mjsTexture* texture = edit(mjs_addTexture, spec_, nullptr);
-      name(texture->element, look.name);
+      mjsTexture* texture = mjs_addTexture(spec_, nullptr);
+      const std::string texture_name = set_free_name(texture->element, written);
       texture->type = mjTEXTURE_2D;
       texture->colorspace = mjCOLORSPACE_SRGB;
       texture->width = image.width;
       texture->height = image.height;
       texture->nchannel = image.channels;
-      edit(mjs_setBuffer, texture->data, image.texels.data(),
-           static_cast<int>(image.texels.size()));
-      edit(mjs_setInStringVec, material->textures, mjTEXROLE_RGB, look.name.c_str());
+      mjs_setBuffer(texture->data, image.texels.data(), static_cast<int>(image.texels.size()));
+      mjs_setInStringVec(material->textures, mjTEXROLE_RGB, texture_name.c_str());
     }
     const double rgba[4] = {look.color.x, look.color.y, look.color.z, look.opacity};
     for (int i = 0; i < 4; ++i) material->rgba[i] = static_cast<float>(rgba[i]);
@@ -128,26 +144,27 @@ class PlaceWriter {
     const std::string& part_name = from.parts[part].name;
     known = fmt::format("{}.{}/{}{}{}", from.label, prop, part_name, part_name.empty() ? "" : ".",
                         source.name);
-    add_mesh(known, source.mesh);
+    known = add_mesh(known, source.mesh);
     return known;
   }
 
-  void add_mesh(const std::string& mesh_name, const TriangleMesh& from) {
-    mjsMesh* mesh = edit(mjs_addMesh, spec_, nullptr);
-    name(mesh->element, mesh_name);
+  std::string add_mesh(const std::string& mesh_name, const TriangleMesh& from) {
+    mjsMesh* mesh = mjs_addMesh(spec_, nullptr);
+    std::string written = set_free_name(mesh->element, mesh_name);
     mesh->inertia = mjMESH_INERTIA_SHELL;  // a visual has no mass, and may be open
     const auto count = static_cast<int>(from.positions.size());
     edit(mjs_setFloat, mesh->uservert, &from.positions[0].x, 3 * count);
     edit(mjs_setFloat, mesh->usernormal, &from.normals[0].x, 3 * count);
     const std::vector<int> faces(from.indices.begin(), from.indices.end());
     const auto corners = static_cast<int>(faces.size());
-    edit(mjs_setInt, mesh->userface, faces.data(), corners);
-    edit(mjs_setInt, mesh->userfacenormal, faces.data(), corners);
-    if (from.uvs.empty()) return;
+    mjs_setInt(mesh->userface, faces.data(), corners);
+    mjs_setInt(mesh->userfacenormal, faces.data(), corners);
+    if (from.uvs.empty()) return written;
     std::vector<float> uvs;
     for (const Vec2f uv : from.uvs) uvs.insert(uvs.end(), {uv.x, 1 - uv.y});
-    edit(mjs_setFloat, mesh->usertexcoord, uvs.data(), static_cast<int>(uvs.size()));
-    edit(mjs_setInt, mesh->userfacetexcoord, faces.data(), corners);
+    mjs_setFloat(mesh->usertexcoord, uvs.data(), static_cast<int>(uvs.size()));
+    mjs_setInt(mesh->userfacetexcoord, faces.data(), corners);
+    return written;
   }
 
   void add_placement(const Placement& placement) {
@@ -160,8 +177,7 @@ class PlaceWriter {
                             : bodies[static_cast<size_t>(part.parent)];
       mjsBody* body = edit(mjs_addBody, parent, nullptr);
       bodies.push_back(body);
-      const std::string body_name =
-          part.parent < 0 ? placement.name : placement.name + "/" + part.name;
+      const std::string body_name = body_name_of(placement, part);
       name(body->element, body_name);
       body->mocap = placement.driven ? 1 : 0;
       if (part.parent < 0 || placement.driven) {
@@ -207,16 +223,16 @@ class PlaceWriter {
                    mjsBody* body) {
     const std::vector<PropVisual>& visuals = place_.prop(placement.prop).parts[part].visuals;
     for (size_t v = 0; v < visuals.size(); ++v) {
-      mjsGeom* geom = edit(mjs_addGeom, body, nullptr);
-      name(geom->element, body_name + "/" + visuals[v].name);
+      mjsGeom* geom = mjs_addGeom(body, nullptr);
+      set_free_name(geom->element, body_name + "/" + visuals[v].name);
       show(geom, mesh_of(placement.prop, part, v), visuals[v].material);
     }
   }
 
-  static void show(mjsGeom* geom, const std::string& mesh, const std::string& material) {
+  void show(mjsGeom* geom, const std::string& mesh, const std::string& material) const {
     geom->type = mjGEOM_MESH;
-    edit(mjs_setString, geom->meshname, mesh.c_str());
-    edit(mjs_setString, geom->material, material.c_str());
+    mjs_setString(geom->meshname, mesh.c_str());
+    mjs_setString(geom->material, looks_.at(material).c_str());
     geom->contype = geom->conaffinity = 0;
     geom->group = kVisualGroup;
     geom->mass = 0;
@@ -239,8 +255,8 @@ class PlaceWriter {
     std::string& known = hulls_[{prop, part, number}];
     if (!known.empty()) return known;
     known = fmt::format("{}.{}/{}.hull_{}", place_.prop(prop).label, prop, part, number + 1);
-    mjsMesh* mesh = edit(mjs_addMesh, spec_, nullptr);
-    name(mesh->element, known);
+    mjsMesh* mesh = mjs_addMesh(spec_, nullptr);
+    known = set_free_name(mesh->element, known);
     mesh->inertia = mjMESH_INERTIA_CONVEX;
     edit(mjs_setFloat, mesh->uservert, &hull.positions[0].x,
          3 * static_cast<int>(hull.positions.size()));
@@ -281,41 +297,11 @@ class PlaceWriter {
   mjSpec* spec_;
   std::vector<std::vector<std::vector<std::string>>> meshes_;     // names by prop, part, visual
   std::map<std::tuple<int, size_t, size_t>, std::string> hulls_;  // by prop, part, collider
+  std::map<std::string, std::string> looks_;                      // names in the spec by look
 };
 
 }  // namespace
 
 Status add_place(const Place& place, mjSpec* spec) { return PlaceWriter(place, spec).write(); }
-
-void add_place_looks(const Place& place, Scene* scene) {
-  // A maker may have mixed a material that this variant does not show.
-  std::set<std::string> shown;
-  for (const Placement& placement : place.placements())
-    for (const PropPart& part : place.prop(placement.prop).parts)
-      for (const PropVisual& visual : part.visuals) shown.insert(visual.material);
-  for (const Scatter& scatter : place.scatters())
-    for (const PropVisual& visual : place.prop(scatter.prop).body().visuals)
-      shown.insert(visual.material);
-  std::vector<MaterialOptions> materials;
-  for (const Look& look : place.materials.looks()) {
-    if (!shown.count(look.name)) continue;
-    MaterialOptions options = look.more;
-    options.name = look.name;
-    materials.push_back(std::move(options));
-  }
-  scene->materials.insert(scene->materials.begin(), materials.begin(), materials.end());
-  std::vector<LightOptions> lights;
-  for (const Placement& placement : place.placements()) {
-    int number = 0;
-    for (LightOptions light : place.prop(placement.prop).lights) {
-      light.body = placement.name;
-      light.name = fmt::format("{}/{}_{}", placement.name, light.name.empty() ? "lamp" : light.name,
-                               ++number);
-      lights.push_back(std::move(light));
-    }
-  }
-  scene->lights.insert(scene->lights.begin(), lights.begin(), lights.end());
-  if (!scene->sky) scene->sky = place.sky;
-}
 
 }  // namespace gloam

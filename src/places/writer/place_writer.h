@@ -14,4 +14,8 @@ Status add_place(const Place& place, mjSpec* spec);
 /// Adds what MJCF cannot say, materials, lamps and the sky, before what the scene says itself.
 void add_place_looks(const Place& place, Scene* scene);
 
+/// Gives the materials that add_place_looks() added the names under which add_place() wrote them
+/// into the model: a look whose name the environment uses itself is called "props/NAME" there.
+void match_place_looks(const Place& place, const mjModel& model, Scene* scene);
+
 }  // namespace gloam

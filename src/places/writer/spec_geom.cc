@@ -1,11 +1,18 @@
 #include "places/writer/spec_geom.h"
 
-#include "places/writer/spec_edit.h"
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
 namespace gloam {
+
+std::string set_free_name(mjsElement* element, const std::string& text) {
+  std::string name = text;
+  for (int n = 2; mjs_setName(element, name.c_str()) != 0; ++n)
+    name = fmt::format("{}_{}", text, n);
+  return name;
+}
 
 void write_pose(const Pose& X, double* pos, double* quat) {
   pos[0] = X.p.x, pos[1] = X.p.y, pos[2] = X.p.z;
@@ -25,8 +32,8 @@ void write_friction(const std::optional<Vec3>& friction, mjsGeom* geom) {
 }
 
 mjsGeom* add_collider_geom(mjsBody* body, const std::string& name) {
-  mjsGeom* geom = edit(mjs_addGeom, body, nullptr);
-  edit(mjs_setName, geom->element, name.c_str());
+  mjsGeom* geom = mjs_addGeom(body, nullptr);
+  set_free_name(geom->element, name);
   geom->group = kColliderGroup;
   constexpr float kBlue[4] = {0.3f, 0.6f, 0.9f, 0.3f};
   std::copy(kBlue, kBlue + 4, geom->rgba);

@@ -12,6 +12,10 @@ namespace gloam {
 
 inline constexpr int kVisualGroup = 2, kColliderGroup = 3;
 
+/// Names the element `text`, or `text`_2, _3 … where the spec has an element of its kind with that
+/// name already. Returns the name. For elements that nobody looks up: geoms, meshes, textures.
+std::string set_free_name(mjsElement* element, const std::string& text);
+
 /// Into the fields of an element of a spec.
 void write_pose(const Pose& X, double* pos, double* quat);
 

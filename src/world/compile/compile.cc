@@ -65,8 +65,9 @@ RobotInstance bare_robot(const Scene& scene, const mjModel* model) {
   return robot;
 }
 
-// Describes the parts of a place that are not in the model.
+// Describes the parts of a place that are not in the model, and names its materials as in there.
 void describe_place(const Place& place, CompiledWorld* world) {
+  match_place_looks(place, *world->model, &world->scene);
   world->regions = place.regions;
   world->ev100 = place.ev100;
 }
@@ -208,10 +209,10 @@ Result<World> compile_scene(const Scene& written, const std::string& keyframe,
   world->keyframe = keyframe;
   world->place_hash = place_hash;
   world->drawn = drawn;
-  if (place) describe_place(*place, world.get());
   world->robots = list_robots(level);
   if (!scene.bare_model.empty()) world->robots = {bare_robot(scene, level.model.get())};
   world->model = std::move(level.model);
+  if (place) describe_place(*place, world.get());
   world->initial_key = level.initial_key;
   GLOAM_TRY_STATUS(choose_keyframe(keyframe, world.get()));
   world->notes = std::move(level.notes);

@@ -29,11 +29,13 @@ class ObjectWriter {
       : o_(object.options), mesh_(object.mesh), spec_(spec) {}
 
   Status write(const Converted& converted) {
-    if (mjs_findBody(spec_, o_.name.c_str()) != nullptr)
-      return Error{ErrorKind::kInput,
-                   fmt::format("{}: the environment has a body of that name", title(o_)), o_.loc,
-                   "rename the object"};
-    mjsBody* body = edit(mjs_addBody, mjs_findBody(spec_, "world"), nullptr);
+    for (const auto& [type, word] :
+         {std::pair(mjOBJ_BODY, "body"), std::pair(mjOBJ_JOINT, "joint")})
+      if (mjs_findElement(spec_, type, o_.name.c_str()) != nullptr)
+        return Error{ErrorKind::kInput,
+                     fmt::format("{}: the environment has a {} of that name", title(o_), word),
+                     o_.loc, "rename the object"};
+    mjsBody* body = mjs_addBody(mjs_findBody(spec_, "world"), nullptr);
     name(body->element, o_.name);
     write_pose(o_.X_WO, body->pos, body->quat);
     const double mass = o_.mass.value_or(o_.density * converted.mass.volume);
@@ -77,8 +79,7 @@ class ObjectWriter {
   void add_collider(const MeshCollider& c, int number, double mass, mjsBody* body) {
     mjsGeom* geom = add_collider_geom(body, fmt::format("{}/collider_{}", o_.name, number));
     if (c.type == MeshColliderType::kHull) {
-      const std::string mesh = fmt::format("{}/hull_{}", o_.name, number);
-      add_mesh(mesh, c.hull);
+      const std::string mesh = add_mesh(fmt::format("{}/hull_{}", o_.name, number), c.hull);
       geom->type = mjGEOM_MESH;
       edit(mjs_setString, geom->meshname, mesh.c_str());
     } else {
@@ -93,14 +94,15 @@ class ObjectWriter {
     write_friction(o_.friction, geom);
   }
 
-  void add_mesh(const std::string& mesh_name, const TriangleMesh& hull) {
-    mjsMesh* mesh = edit(mjs_addMesh, spec_, nullptr);
-    name(mesh->element, mesh_name);
+  std::string add_mesh(const std::string& mesh_name, const TriangleMesh& hull) {
+    mjsMesh* mesh = mjs_addMesh(spec_, nullptr);
+    std::string written = set_free_name(mesh->element, mesh_name);
     mesh->inertia = mjMESH_INERTIA_SHELL;  // small hulls have too little volume for MuJoCo
     edit(mjs_setFloat, mesh->uservert, &hull.positions[0].x,
          static_cast<int>(3 * hull.positions.size()));
     const std::vector<int> faces(hull.indices.begin(), hull.indices.end());
-    edit(mjs_setInt, mesh->userface, faces.data(), static_cast<int>(faces.size()));
+    mjs_setInt(mesh->userface, faces.data(), static_cast<int>(faces.size()));
+    return written;
   }
 
   const ObjectOptions& o_;
