@@ -44,7 +44,8 @@ size_t component_count(std::string_view type) {
   if (type == "SCALAR") return 1;
   if (type == "VEC2") return 2;
   if (type == "VEC3") return 3;
-  return type == "VEC4" ? 4 : 0;  // matrices do not occur in what is read
+  if (type == "MAT4") return 16;
+  return type == "VEC4" ? 4 : 0;  // smaller matrices do not occur in what is read
 }
 
 template <class T>
@@ -139,7 +140,7 @@ bool read_head(GltfDocument* document, const JsonNode& node, size_t out_size, Ac
   head->has_view = node["bufferView"].exists();
   if (component_size(head->type) == 0)
     node["componentType"].fail(fmt::format("{} is no component type", head->type));
-  if (head->components == 0) node["type"].fail("is none of SCALAR, VEC2, VEC3, VEC4");
+  if (head->components == 0) node["type"].fail("is none of SCALAR, VEC2, VEC3, VEC4, MAT4");
   const uint64_t limit =
       head->has_view ? 3 * document->source().options->limits.vertices : kMaxZeroElements;
   if (head->count > limit)

@@ -61,10 +61,17 @@ std::string decode_uri(std::string_view uri);
 void read_gltf_images(GltfDocument* document, ModelFile* model);
 void read_gltf_materials(GltfDocument* document, ModelFile* model);
 
+/// Joints of a skin that move each vertex, with their weights: `per_vertex` of each, 0 = none.
+struct GltfVertexWeights {
+  size_t per_vertex = 0;
+  std::vector<uint32_t> joints;
+  std::vector<float> weights;
+};
 /// Meshes of the primitives of each mesh of the file.
 struct GltfMeshTable {
   struct Part {
     int mesh = 0, material = -1;
+    GltfVertexWeights weights = {};
   };
   std::vector<std::vector<Part>> parts;  ///< one list per mesh of the file
 };

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "geometry/gltf/document.h"
+#include "geometry/gltf/skins.h"
 #include "geometry/mesh/vertex_colors.h"
 
 namespace gloam {
@@ -51,33 +52,54 @@ class PrimitiveReader {
   // draw or an error.
   GltfMeshTable::Part read_part(const JsonNode& node, int material) {
     GltfMeshTable::Part out{read(node), material};
+    if (out.mesh >= 0 && document_->root()["skins"].size() > 0)
+      out.weights = read_gltf_weights(document_, node["attributes"], mesh_of(out).positions.size());
     const JsonNode color = node["attributes"]["COLOR_0"];
     if (out.mesh < 0 || !color.exists()) return out;
     const JsonNode accessors = document_->root()["accessors"];
     const int accessor = color.index(accessors.size(), "accessor");
-    if (accessor < 0) return {-1, material};
+    if (accessor < 0) return {-1, material, {}};
     const size_t width =
         accessors.at(static_cast<size_t>(accessor))["type"].text() == "VEC4" ? 4 : 3;
-    const size_t count = model_->meshes[static_cast<size_t>(out.mesh)].positions.size();
+    const size_t count = mesh_of(out).positions.size();
     std::vector<float> numbers;
-    if (!read_vertices(color, width, count, &numbers)) return {-1, material};
+    if (!read_vertices(color, width, count, &numbers)) return {-1, material, {}};
     std::vector<Vec3f> colors(count);
     bool is_clear = false;
     for (size_t i = 0; i < count; ++i) {
       const float* n = &numbers[i * width];
       if (!std::isfinite(n[0] + n[1] + n[2])) {
         color.fail(fmt::format("the colour of vertex {} is not finite", i));
-        return {-1, material};
+        return {-1, material, {}};
       }
       colors[i] = {n[0], n[1], n[2]};
       is_clear = is_clear || (width == 4 && n[3] < 1);
     }
     if (is_clear) add_note(model_, "the transparency of vertex colours is left out");
+    const int plain = out.mesh;
     out.material = paint_vertices(colors, material, &out.mesh, &painted_, model_);
+    if (out.mesh != plain) split_weights(model_->meshes[static_cast<size_t>(plain)], &out.weights);
     return out;
   }
 
  private:
+  const TriangleMesh& mesh_of(const GltfMeshTable::Part& part) const {
+    return model_->meshes[static_cast<size_t>(part.mesh)];
+  }
+
+  // Painting gives every corner of a triangle a vertex of its own.
+  static void split_weights(const TriangleMesh& plain, GltfVertexWeights* weights) {
+    GltfVertexWeights out;
+    out.per_vertex = weights->per_vertex;
+    if (out.per_vertex == 0) return;
+    for (const uint32_t vertex : plain.indices)
+      for (size_t k = vertex * out.per_vertex; k < (vertex + 1) * out.per_vertex; ++k) {
+        out.joints.push_back(weights->joints[k]);
+        out.weights.push_back(weights->weights[k]);
+      }
+    *weights = std::move(out);
+  }
+
   // Index of the new mesh; -1 = nothing to draw or an error.
   int read(const JsonNode& node) const {
     const uint64_t mode = node["mode"].integer(kTriangles, kFan);
@@ -175,8 +197,8 @@ GltfMeshTable read_gltf_meshes(GltfDocument* document, ModelFile* model) {
     for (size_t k = 0; k < primitives.size() && document->errors().ok(); ++k) {
       const JsonNode primitive = primitives.at(k);
       const int material = primitive["material"].index(materials, "material");
-      const GltfMeshTable::Part part = reader.read_part(primitive, material);
-      if (part.mesh >= 0) out.parts.back().push_back(part);
+      GltfMeshTable::Part part = reader.read_part(primitive, material);
+      if (part.mesh >= 0) out.parts.back().push_back(std::move(part));
       progress.add(1);
     }
   }

@@ -5,51 +5,17 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 
 #include "geometry/gltf/document.h"
+#include "geometry/gltf/node_place.h"
+#include "geometry/gltf/skins.h"
 
 namespace gloam {
 namespace {
 
 // Y up to Z up: (x, y, z) -> (x, -z, y).
 constexpr Affine3f kZUp{{1, 0, 0}, {0, 0, 1}, {0, -1, 0}, {0, 0, 0}};
-
-Affine3f from_matrix(const JsonNode& node) {
-  float m[16];
-  if (!node.numbers(m, 16)) return {};
-  if (m[3] != 0 || m[7] != 0 || m[11] != 0 || m[15] != 1)
-    node.fail("is no affine map: its last row must be 0 0 0 1");
-  return {{m[0], m[1], m[2]}, {m[4], m[5], m[6]}, {m[8], m[9], m[10]}, {m[12], m[13], m[14]}};
-}
-
-// x y z w to length one; false where it has none.
-bool normalize_rotation(std::array<float, 4>* q) {
-  const auto [x, y, z, w] = *q;
-  const float norm = std::sqrt(x * x + y * y + z * z + w * w);
-  if (!(norm > 1e-6f && std::isfinite(norm))) return false;
-  for (float& v : *q) v /= norm;
-  return true;
-}
-
-Affine3f from_rotation(const std::array<float, 4>& q, Vec3f scale) {
-  const auto [x, y, z, w] = q;
-  Affine3f out;
-  out.x = Vec3f{1 - 2 * (y * y + z * z), 2 * (x * y + w * z), 2 * (x * z - w * y)} * scale.x;
-  out.y = Vec3f{2 * (x * y - w * z), 1 - 2 * (x * x + z * z), 2 * (y * z + w * x)} * scale.y;
-  out.z = Vec3f{2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y)} * scale.z;
-  return out;
-}
-
-Affine3f from_parts(const JsonNode& node) {
-  std::array<float, 4> q = {0, 0, 0, 1};
-  if (node["rotation"].numbers(q.data(), 4) && !normalize_rotation(&q)) {
-    node["rotation"].fail("is no rotation: the quaternion is zero or too large");
-    return {};
-  }
-  Affine3f out = from_rotation(q, node["scale"].vec3({1, 1, 1}));
-  out.p = node["translation"].vec3({0, 0, 0});
-  return out;
-}
 
 bool is_finite(const Affine3f& X) {
   for (const Vec3f& v : {X.x, X.y, X.z, X.p})
@@ -87,6 +53,7 @@ class NodeReader {
     const JsonNode lights = document_->root()["extensions"]["KHR_lights_punctual"]["lights"];
     for (size_t i = 0; i < lights.size() && ok(); ++i) lights_.push_back(read_light(lights.at(i)));
     if (!find_parents() || !refuse_cycles()) return;
+    skins_ = read_gltf_skins(document_);
     std::vector<int> roots = find_roots();
     struct Visit {
       int node;
@@ -98,8 +65,7 @@ class NodeReader {
       const Visit visit = stack.back();
       stack.pop_back();
       const JsonNode node = nodes_.at(static_cast<size_t>(visit.node));
-      const Affine3f X_FN =
-          visit.X_FP * (node["matrix"].exists() ? from_matrix(node["matrix"]) : from_parts(node));
+      const Affine3f X_FN = visit.X_FP * place_in_parent(node);
       if (!is_finite(X_FN)) return node.fail("its place is not finite");
       add_content(node, X_FN);
       const std::vector<int>& children = children_[static_cast<size_t>(visit.node)];
@@ -208,32 +174,78 @@ class NodeReader {
       }
       const Vec3f s =
           scale.empty() ? Vec3f{1, 1, 1} : Vec3f{scale[3 * i], scale[3 * i + 1], scale[3 * i + 2]};
-      Affine3f X = from_rotation(q, s);
+      Affine3f X = place_from(q, s);
       if (!shift.empty()) X.p = {shift[3 * i], shift[3 * i + 1], shift[3 * i + 2]};
       out->push_back(X);
     }
     return true;
   }
 
+  // Pose of any node in the file, also of one that no scene shows: joints may be such nodes.
+  const Affine3f& place_of(int node) {
+    if (places_.empty()) places_.resize(parents_.size());
+    std::vector<int> path;  // up to an ancestor whose place is known
+    for (int n = node; n >= 0 && !places_[static_cast<size_t>(n)];
+         n = parents_[static_cast<size_t>(n)])
+      path.push_back(n);
+    for (; !path.empty(); path.pop_back()) {
+      const auto n = static_cast<size_t>(path.back());
+      const Affine3f X_FP = parents_[n] < 0 ? kZUp : *places_[static_cast<size_t>(parents_[n])];
+      places_[n] = X_FP * place_in_parent(nodes_.at(n));
+    }
+    return *places_[static_cast<size_t>(node)];
+  }
+
+  // Adds the part bent by the skin. Its place is the joints'; that of its node does not count.
+  void add_skinned(const JsonNode& node, const std::string& name, const GltfMeshTable::Part& part,
+                   const GltfSkin& skin) {
+    TriangleMesh mesh = model_->meshes[static_cast<size_t>(part.mesh)];
+    constexpr size_t kVertexBytes = 2 * sizeof(Vec3f) + 2 * sizeof(Vec2f);
+    if (model_->meshes.size() >= document_->source().options->limits.meshes ||
+        !document_->budget().take(mesh.positions.size(), kVertexBytes))
+      return node.fail("with its skinned meshes the model unpacks to more than the limit");
+    std::vector<Affine3f> X_FM;
+    for (size_t i = 0; i < skin.joints.size(); ++i)
+      X_FM.push_back(place_of(skin.joints[i]) * skin.X_JM[i]);
+    if (!bend_mesh(part.weights, X_FM, &mesh))
+      return node["skin"].fail(
+          fmt::format("a vertex names a joint beyond its {}", skin.joints.size()));
+    const Status sound = finish_mesh(&mesh, node.pointer(), document_->source().name, model_);
+    if (!sound.ok()) return document_->errors().add(sound.error());
+    model_->instances.push_back(
+        {name, static_cast<int>(model_->meshes.size()), part.material, Affine3f{}});
+    model_->meshes.push_back(std::move(mesh));
+  }
+
+  void add_mesh(const JsonNode& node, const std::string& name, size_t mesh, const Affine3f& X_FN) {
+    const ModelLimits& limits = document_->source().options->limits;
+    const int skin = node["skin"].index(skins_.size(), "skin");
+    std::vector<Affine3f> places = {Affine3f{}};
+    const JsonNode copies = node["extensions"]["EXT_mesh_gpu_instancing"]["attributes"];
+    if (skin >= 0) add_note(model_, "skinned meshes are drawn in the pose of the file's nodes");
+    if (copies.exists() && !read_copies(copies, &places)) return;
+    for (const Affine3f& X_NC : places) {
+      const Affine3f X_FC = copies.exists() ? X_FN * X_NC : X_FN;
+      if (!is_finite(X_FC)) return copies.fail("puts an instance at no finite place");
+      for (const GltfMeshTable::Part& part : meshes_.parts[mesh]) {
+        if (!ok()) return;
+        if (model_->instances.size() >= limits.instances)
+          return node.fail(fmt::format("there are more than {} instances", limits.instances));
+        if (skin >= 0 && part.weights.per_vertex > 0)
+          add_skinned(node, name, part, skins_[static_cast<size_t>(skin)]);
+        else
+          model_->instances.push_back({name, part.mesh, part.material, X_FC});
+      }
+      if (skin >= 0) return;  // all copies would be in one place
+    }
+  }
+
   void add_content(const JsonNode& node, const Affine3f& X_FN) {
-    if (node["skin"].exists()) add_note(model_, "skins are left out: the mesh is not bent");
     if (node["camera"].exists()) add_note(model_, "cameras are left out");
     const ModelLimits& limits = document_->source().options->limits;
     const std::string name = node["name"].text().substr(0, kMaxName);
-    if (const int mesh = node["mesh"].index(meshes_.parts.size(), "mesh"); mesh >= 0) {
-      std::vector<Affine3f> places = {Affine3f{}};
-      const JsonNode copies = node["extensions"]["EXT_mesh_gpu_instancing"]["attributes"];
-      if (copies.exists() && !read_copies(copies, &places)) return;
-      for (const Affine3f& X_NC : places) {
-        const Affine3f X_FC = copies.exists() ? X_FN * X_NC : X_FN;
-        if (!is_finite(X_FC)) return copies.fail("puts an instance at no finite place");
-        for (const GltfMeshTable::Part& part : meshes_.parts[static_cast<size_t>(mesh)]) {
-          if (model_->instances.size() >= limits.instances)
-            return node.fail(fmt::format("there are more than {} instances", limits.instances));
-          model_->instances.push_back({name, part.mesh, part.material, X_FC});
-        }
-      }
-    }
+    if (const int mesh = node["mesh"].index(meshes_.parts.size(), "mesh"); mesh >= 0)
+      add_mesh(node, name, static_cast<size_t>(mesh), X_FN);
     const int light =
         node["extensions"]["KHR_lights_punctual"]["light"].index(lights_.size(), "light");
     if (light < 0) return;
@@ -251,6 +263,8 @@ class NodeReader {
   std::vector<int> parents_;
   std::vector<std::vector<int>> children_;
   std::vector<ImportedLight> lights_;
+  std::vector<GltfSkin> skins_;
+  std::vector<std::optional<Affine3f>> places_;  // by node, as far as they are known
 };
 
 }  // namespace

@@ -13,8 +13,8 @@ namespace gloam {
 namespace fs = std::filesystem;
 namespace {
 
-// "GLOMDL03": changes with what readers give.
-constexpr uint64_t kModelMagic = 0x33304C444D4F4C47ull;
+// "GLOMDL04": changes with what readers give.
+constexpr uint64_t kModelMagic = 0x34304C444D4F4C47ull;
 constexpr uint64_t kLargestEntry = uint64_t{8} << 30;
 
 }  // namespace
