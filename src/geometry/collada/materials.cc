@@ -8,9 +8,9 @@
 #include <cmath>
 #include <optional>
 
+#include "base/path_readings.h"
 #include "base/srgb.h"
 #include "geometry/collada/document.h"
-#include "geometry/gltf/document.h"
 
 namespace gloam {
 namespace {
@@ -178,13 +178,10 @@ class EffectReader {
       written.remove_suffix(1);
     while (!written.empty() && static_cast<unsigned char>(written.front()) <= ' ')
       written.remove_prefix(1);
-    std::string name = decode_uri(written);
-    std::replace(name.begin(), name.end(), '\\', '/');
+    std::string name = with_slashes(written);
     if (name.starts_with("file:///")) name = name.substr(7);
     if (name.starts_with("./")) name = name.substr(2);
-    // A drive or an absolute path is the exporter's: the picture may lie beside the model.
-    if (name.starts_with('/') || (name.size() > 2 && name[1] == ':' && name[2] == '/'))
-      name = name.substr(name.rfind('/') + 1);
+    name = without_foreign_folder(name);
     const auto known = std::find_if(model_->images.begin(), model_->images.end(),
                                     [&](const ImportedImage& i) { return i.name == name; });
     if (known != model_->images.end()) {

@@ -15,12 +15,6 @@ constexpr std::array<std::string_view, 13> kExtensions = {
     "KHR_materials_unlit",        "KHR_mesh_quantization", "KHR_materials_emissive_strength",
     "EXT_mesh_gpu_instancing"};
 
-int hex_digit(char c) {
-  if (c >= '0' && c <= '9') return c - '0';
-  const char lower = static_cast<char>(c | 0x20);
-  return lower >= 'a' && lower <= 'f' ? lower - 'a' + 10 : -1;
-}
-
 int base64_digit(char c) {
   if (c >= 'A' && c <= 'Z') return c - 'A';
   if (c >= 'a' && c <= 'z') return c - 'a' + 26;
@@ -79,17 +73,6 @@ void note_unknown_extensions(GltfDocument* document, ModelFile* model) {
   }
 }
 
-std::string decode_uri(std::string_view uri) {
-  std::string out;
-  for (size_t i = 0; i < uri.size(); ++i) {
-    const bool escaped = uri[i] == '%' && i + 2 < uri.size() && hex_digit(uri[i + 1]) >= 0 &&
-                         hex_digit(uri[i + 2]) >= 0;
-    out += escaped ? static_cast<char>(hex_digit(uri[i + 1]) * 16 + hex_digit(uri[i + 2])) : uri[i];
-    if (escaped) i += 2;
-  }
-  return out;
-}
-
 Result<std::vector<uint8_t>> GltfDocument::fetch(const std::string& uri,
                                                  const std::string& pointer) {
   const SourceLoc loc{source_.name, 0, 0};
@@ -105,8 +88,7 @@ Result<std::vector<uint8_t>> GltfDocument::fetch(const std::string& uri,
   }
   if (source_.folder == nullptr)
     return Error{ErrorKind::kInput, pointer + ": names a file, but the model has no folder", loc};
-  Result<std::vector<uint8_t>> bytes =
-      source_.folder->read(decode_uri(uri), loc, source_.options->limits);
+  Result<std::vector<uint8_t>> bytes = source_.folder->read(uri, loc, source_.options->limits);
   if (bytes.ok()) return bytes;
   Error error = std::move(bytes).error();
   error.message = pointer + ": " + error.message;

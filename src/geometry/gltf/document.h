@@ -54,9 +54,6 @@ class GltfDocument {
 /// Extensions that the file uses and Gloam lacks, as notes.
 void note_unknown_extensions(GltfDocument* document, ModelFile* model);
 
-/// Text after the percent signs of a URI are undone.
-std::string decode_uri(std::string_view uri);
-
 // gltf/materials.cc: images and materials of the document.
 void read_gltf_images(GltfDocument* document, ModelFile* model);
 void read_gltf_materials(GltfDocument* document, ModelFile* model);

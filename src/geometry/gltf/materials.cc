@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "base/path_readings.h"
 #include "geometry/gltf/document.h"
 
 namespace gloam {
@@ -175,7 +176,7 @@ void read_gltf_images(GltfDocument* document, ModelFile* model) {
     if (image["uri"].exists()) {
       const std::string uri = image["uri"].text();
       if (out.name.empty() && !uri.starts_with("data:"))
-        out.name = decode_uri(uri).substr(0, kMaxName);
+        out.name = decode_percent(uri).substr(0, kMaxName);
       Result<std::vector<uint8_t>> bytes = document->fetch(uri, image.pointer());
       if (!bytes.ok()) return document->errors().add(std::move(bytes).error());
       out.bytes = std::move(*bytes);

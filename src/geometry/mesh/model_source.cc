@@ -8,6 +8,7 @@
 #include "base/files.h"
 #include "base/hash.h"
 #include "base/parallel.h"
+#include "base/path_readings.h"
 
 namespace gloam {
 namespace fs = std::filesystem;
@@ -111,14 +112,18 @@ Result<std::vector<uint8_t>> ModelFolder::read(std::string_view name, const Sour
     return Error{ErrorKind::kInput, fmt::format("the file name '{}' {}", name.substr(0, 200), why),
                  loc, "put the file beside the model and name it by a relative path"};
   };
-  if (const std::string why = why_not_a_relative_path(name); !why.empty()) return refuse(why);
   if (root_.empty()) return refuse("cannot be looked up: the model is not read from a folder");
   if (parts_.size() >= limits.external_files)
     return refuse(fmt::format("is one too many: the limit is {}", limits.external_files));
+  fs::path path;
   std::error_code code;
-  const fs::path path = fs::weakly_canonical(folder_ / fs::path(name), code);
-  if (code || !is_below(path, root_))
-    return refuse(fmt::format("leads out of the folder '{}'", root_.string()));
+  for (const std::string& reading : path_readings(name)) {
+    if (const std::string why = why_not_a_relative_path(reading); !why.empty()) return refuse(why);
+    path = fs::weakly_canonical(folder_ / fs::path(reading), code);
+    if (code || !is_below(path, root_))
+      return refuse(fmt::format("leads out of the folder '{}'", root_.string()));
+    if (fs::exists(path, code)) break;
+  }
   if (!fs::exists(path, code)) {
     parts_.push_back({std::string(name), false, 0});
     return Error{ErrorKind::kIo, fmt::format("the file '{}' is missing", name), loc,

@@ -1,5 +1,5 @@
-// MTL with the physically based keys that exporters have agreed on (Pr Pm Ps Pc Pcr aniso anisor
-// norm, map_*). What the older keys mean here:
+// MTL, its keywords in any case, with the physically based keys that exporters have agreed on (Pr
+// Pm Ps Pc Pcr aniso anisor norm, map_*). Meaning of the older keys:
 //   Kd base colour; Ks: black = no specular layer, else one of index Ni; Ns: Blinn's exponent, of
 //   which alpha² = 2 / (Ns + 2) and roughness = sqrt(alpha); Ke x 100 cd/m² (docs/light.md: full
 //   white); d or 1 - Tr opacity; illum 4, 6, 7, 9 with d < 1 or Tf: glass coloured by Tf.
@@ -13,6 +13,7 @@
 #include <cmath>
 #include <optional>
 
+#include "base/path_readings.h"
 #include "base/plain_text.h"
 #include "geometry/mesh/text_lines.h"
 
@@ -20,6 +21,11 @@ namespace gloam {
 namespace {
 
 constexpr float kFullWhite = 100;  // [cd/m²]
+
+// Keys that describe light which is simulated here instead.
+bool is_needless(std::string_view key) {
+  return key == "ka" || key == "map_ka" || key == "sharpness" || key == "map_aat";
+}
 
 // The material at hand with what decides how its older keys are read.
 struct Now {
@@ -40,8 +46,9 @@ class MtlParser {
       std::string_view line = take_line(&text);
       ++line_;
       if (line.size() > kMaxLine) return bad("the line is too long");
-      const std::string_view key = take_word(&line);
-      if (key.empty() || key[0] == '#') continue;
+      const std::string_view written = take_word(&line);
+      if (written.empty() || written[0] == '#') continue;
+      const std::string key = lower_case(written.substr(0, kMaxName));
       if (key == "newmtl") {
         finish();
         if (model_->materials.size() >= source_.options->limits.materials)
@@ -68,28 +75,29 @@ class MtlParser {
       float* value;
       float high;
     };
-    const Scalar scalars[] = {{"Pm", &m.metallic, 1},
-                              {"Pc", &m.coat_weight, 1},
-                              {"Pcr", &m.coat_roughness, 1},
-                              {"Ps", &m.fuzz_weight, 1},
+    const Scalar scalars[] = {{"pm", &m.metallic, 1},
+                              {"pc", &m.coat_weight, 1},
+                              {"pcr", &m.coat_roughness, 1},
+                              {"ps", &m.fuzz_weight, 1},
                               {"aniso", &m.anisotropy, 1},
-                              {"Ni", &m.ior, 10},
+                              {"ni", &m.ior, 10},
                               {"anisor", &m.anisotropy_rotation, 1},
                               {"d", &m.opacity, 1}};
+    if (key == "d") line = without_halo(line);
     for (const Scalar& scalar : scalars)
       if (key == scalar.key) return read_number(line, scalar.value, scalar.high);
-    if (key == "Tr") {
+    if (key == "tr") {
       float t = 0;
       GLOAM_TRY_STATUS(read_number(line, &t, 1));
       m.opacity = 1 - t;
       return {};
     }
-    if (key == "Ns") return read_number(line, &now_->exponent.emplace(), 1e6f);
-    if (key == "Pr") return read_number(line, &now_->roughness.emplace(), 1);
-    if (key == "Kd") return read_color(line, &m.base_color);
-    if (key == "Ke") return read_color(line, &m.emission);
-    if (key == "Ks") return read_color(line, &now_->specular.emplace());
-    if (key == "Tf") return read_color(line, &now_->filter.emplace());
+    if (key == "ns") return read_number(line, &now_->exponent.emplace(), 1e6f);
+    if (key == "pr") return read_number(line, &now_->roughness.emplace(), 1);
+    if (key == "kd") return read_color(line, &m.base_color);
+    if (key == "ke") return read_color(line, &m.emission);
+    if (key == "ks") return read_color(line, &now_->specular.emplace());
+    if (key == "tf") return read_color(line, &now_->filter.emplace());
     if (key == "illum") {
       if (!parse_integer(take_word(&line), &now_->illum)) return bad("illum is no whole number");
       return {};
@@ -107,17 +115,16 @@ class MtlParser {
     };
     constexpr auto kColor = TextureChannel::kColor, kRed = TextureChannel::kRed;
     constexpr auto kLinear = ColorSpace::kLinear, kSrgb = ColorSpace::kSrgb;
-    const Map maps[] = {{"map_Kd", &m.base_color_texture, kColor, kSrgb},
-                        {"map_Ke", &m.emission_texture, kColor, kSrgb},
-                        {"map_Ks", &m.specular_color_texture, kColor, kSrgb},
-                        {"map_Pr", &m.roughness_texture, kRed, kLinear},
-                        {"map_Pm", &m.metallic_texture, kRed, kLinear},
-                        {"map_Pc", &m.coat_weight_texture, kRed, kLinear},
-                        {"map_Pcr", &m.coat_roughness_texture, kRed, kLinear},
+    const Map maps[] = {{"map_kd", &m.base_color_texture, kColor, kSrgb},
+                        {"map_ke", &m.emission_texture, kColor, kSrgb},
+                        {"map_ks", &m.specular_color_texture, kColor, kSrgb},
+                        {"map_pr", &m.roughness_texture, kRed, kLinear},
+                        {"map_pm", &m.metallic_texture, kRed, kLinear},
+                        {"map_pc", &m.coat_weight_texture, kRed, kLinear},
+                        {"map_pcr", &m.coat_roughness_texture, kRed, kLinear},
                         {"map_d", &m.opacity_texture, kRed, kLinear},
                         {"norm", &m.normal_texture, kColor, kLinear},
-                        {"map_Kn", &m.normal_texture, kColor, kLinear},
-                        {"map_Bump", &m.bump_texture, kRed, kLinear},
+                        {"map_kn", &m.normal_texture, kColor, kLinear},
                         {"map_bump", &m.bump_texture, kRed, kLinear},
                         {"bump", &m.bump_texture, kRed, kLinear}};
     for (const Map& map : maps) {
@@ -126,7 +133,15 @@ class MtlParser {
       map.texture->color_space = map.space;
       return read_texture(line, map.texture);
     }
-    return {};  // Ka, map_Ka, refl, disp …: not what this light is made of
+    if (!is_needless(key))
+      add_note(model_, fmt::format("'{:.40}' of the material library is left out", key));
+    return {};
+  }
+
+  // "d -halo 0.5": opacity that depends on the angle; its number is taken as that of all angles.
+  static std::string_view without_halo(std::string_view line) {
+    std::string_view rest = line;
+    return lower_case(take_word(&rest)) == "-halo" ? rest : line;
   }
 
   Status read_number(std::string_view line, float* out, float high) {
@@ -166,11 +181,28 @@ class MtlParser {
     return out;
   }
 
+  static bool is_map_option(std::string_view option) {
+    constexpr std::string_view kOptions[] = {"-blendu", "-blendv", "-boost",
+                                             "-cc",     "-texres", "-type"};
+    return std::ranges::find(kOptions, option) != std::end(kOptions);
+  }
+
+  // Of a picture that stands for one number.
+  void choose_channel(std::string_view word, TextureRef* texture) const {
+    if (texture->channel == TextureChannel::kColor) return;
+    if (word == "r") texture->channel = TextureChannel::kRed;
+    if (word == "g") texture->channel = TextureChannel::kGreen;
+    if (word == "b") texture->channel = TextureChannel::kBlue;
+    if (word == "m") texture->channel = TextureChannel::kAlpha;
+    if (word == "l" || word == "z")
+      add_note(model_, "of '-imfchan l' and 'z' the red channel is taken");
+  }
+
   Status read_texture(std::string_view line, TextureRef* texture) {
     std::array<float, 3> scale = {1, 1, 1}, offset = {0, 0, 0};
     for (;;) {
       std::string_view rest = line;
-      const std::string_view option = take_word(&rest);
+      const std::string option = lower_case(take_word(&rest));
       if (option.size() < 2 || option[0] != '-') break;
       line = rest;
       if (option == "-s") {
@@ -185,19 +217,20 @@ class MtlParser {
         (void)take_word(&line);
         (void)take_word(&line);
       } else if (option == "-clamp") {
-        if (take_word(&line) == "on") texture->wrap_u = texture->wrap_v = TextureWrap::kClamp;
+        if (lower_case(take_word(&line)) == "on")
+          texture->wrap_u = texture->wrap_v = TextureWrap::kClamp;
       } else if (option == "-imfchan") {
-        if (take_word(&line) == "m") texture->channel = TextureChannel::kAlpha;
+        choose_channel(lower_case(take_word(&line)), texture);
       } else {
         (void)take_word(&line);  // -blendu, -blendv, -boost, -cc, -texres, -type: one word each
+        if (!is_map_option(option))
+          add_note(model_, fmt::format("the option '{:.40}' of a picture is left out", option));
       }
     }
     // MTL scales and moves with v upwards; UvTransform has it downwards: 1 - (s v + o).
     texture->transform.scale = {scale[0], scale[1]};
     texture->transform.offset = {offset[0], 1 - scale[1] - offset[1]};
-    std::string name(trim(line));
-    std::replace(name.begin(), name.end(), '\\', '/');
-    return find_image(name, &texture->image);
+    return find_image(without_foreign_folder(trim(line)), &texture->image);
   }
 
   Status find_image(const std::string& name, int* image) {

@@ -10,6 +10,7 @@
 #include <map>
 
 #include "base/parallel.h"
+#include "base/path_readings.h"
 #include "geometry/mesh/mtl_reader.h"
 #include "geometry/mesh/text_lines.h"
 #include "geometry/mesh/triangulate.h"
@@ -81,8 +82,10 @@ class PieceParser {
   }
 
   void parse_line(std::string_view line) {
-    const std::string_view word = take_word(&line);
+    std::string_view word = take_word(&line);
     if (word.empty() || word[0] == '#') return;
+    std::string lower;
+    if (word[0] >= 'A' && word[0] <= 'Z') word = lower = lower_case(word);
     if (word == "v") {
       Vec3f p;
       if (!numbers(line, {&p.x, &p.y, &p.z})) return;
@@ -103,9 +106,7 @@ class PieceParser {
       out_.switches.push_back(
           {out_.sizes.size(), word == "usemtl", std::string(trim(line).substr(0, kMaxName))});
     } else if (word == "mtllib") {
-      std::string name(trim(line));
-      std::replace(name.begin(), name.end(), '\\', '/');  // Windows' separators
-      out_.libraries.push_back({std::move(name), out_.lines});
+      out_.libraries.push_back({without_foreign_folder(trim(line)), out_.lines});
     }  // s, l, p, curves and what programs add of their own carry no triangles
   }
 

@@ -11,6 +11,7 @@
 #include "base/files.h"
 #include "base/hash.h"
 #include "base/log.h"
+#include "base/path_readings.h"
 #include "base/plain_text.h"
 #include "base/text.h"
 #include "scene/files/mujoco_guard.h"
@@ -43,6 +44,16 @@ size_t shared_tail(const fs::path& path, const fs::path& value) {
          a[a.size() - 1 - shared] == b[b.size() - 1 - shared])
     ++shared;
   return shared;
+}
+
+// The reading of the path under which there is a file, else the path itself.
+fs::path find_reading(const fs::path& path) {
+  std::error_code code;
+  for (const std::string& reading : path_readings(path.string())) {
+    const fs::path found = fs::path(reading).lexically_normal();
+    if (fs::exists(found, code)) return found;
+  }
+  return path.lexically_normal();
 }
 
 void tell_if_slow(const Replicate& replicate, const fs::path& file) {
@@ -91,7 +102,7 @@ int ModelFiles::provider_open(mjResource* resource) {
 
 int ModelFiles::open_resource(mjResource* resource) {
   std::string hash;
-  Result<Content> content = open(fs::path(resource->name).lexically_normal(), &hash);
+  Result<Content> content = open(find_reading(resource->name), &hash);
   if (!content.ok()) return 0;
   // MuJoCo keeps parsed meshes by name and timestamp; the content's hash never goes stale.
   std::snprintf(resource->timestamp, sizeof(resource->timestamp), "%s", hash.c_str());
@@ -236,10 +247,10 @@ Status ModelFiles::scan(const fs::path& file, const fs::path& model, const Sourc
     }
     if (!leads_to_xml(reference)) continue;
     // MuJoCo looks beside the main file; beside the including one is where people expect it.
-    fs::path target = absolute_path(reference.value, model.parent_path());
+    fs::path target = find_reading(absolute_path(reference.value, model.parent_path()));
     std::error_code code;
     if (!fs::exists(target, code)) {
-      const fs::path beside = absolute_path(reference.value, file.parent_path());
+      const fs::path beside = find_reading(absolute_path(reference.value, file.parent_path()));
       if (fs::exists(beside, code)) target = beside;
     }
     GLOAM_TRY_STATUS(scan(target, reference.element == "model" ? target : model, loc, stack));

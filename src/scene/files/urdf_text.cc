@@ -12,6 +12,7 @@
 #include <sstream>
 
 #include "base/files.h"
+#include "base/path_readings.h"
 #include "geometry/mesh/model_file.h"
 #include "scene/files/model_path.h"
 #include "scene/files/xml_text.h"
@@ -166,8 +167,10 @@ class Preparer {
     }
   }
 
+  // As MuJoCo reads it, to which '\\' divides folders, too.
   fs::path stock_path(const std::string& name) const {
-    const fs::path written = strippath_ ? fs::path(name).filename() : fs::path(name);
+    const fs::path path = with_slashes(name);
+    const fs::path written = strippath_ ? path.filename() : path;
     return absolute_path(fs::path(meshdir_) / written, file_.parent_path());
   }
 
@@ -201,8 +204,16 @@ class Preparer {
     return {file_.string(), lines_.at(node.offset_debug()), 0};
   }
 
+  // The first reading of the name under which there is a file; else where the name itself leads.
   Result<fs::path> find_mesh(const pugi::xml_node& mesh) const {
-    const std::string name = mesh.attribute("filename").value();
+    const std::vector<std::string> readings = path_readings(mesh.attribute("filename").value());
+    for (const std::string& reading : readings)
+      if (Result<fs::path> path = find_mesh(mesh, reading); path.ok() && exists_(*path))
+        return path;
+    return find_mesh(mesh, readings[0]);
+  }
+
+  Result<fs::path> find_mesh(const pugi::xml_node& mesh, const std::string& name) const {
     const size_t scheme_end = name.find("://");
     if (scheme_end == std::string::npos) {
       const std::string refusal = why_not_a_path(name);
