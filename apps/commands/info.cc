@@ -91,8 +91,9 @@ void print_text(const WorldInfo& info, const NotDrawn& not_drawn,
     for (const Error& error : *errors) say("  {}\n", error.to_string());
   }
   // MuJoCo's own remarks tell of what it leaves out.
-  const bool is_ignored = std::ranges::any_of(
-      info.notes, [](const Error& note) { return note.message.starts_with("MuJoCo: "); });
+  const bool is_ignored = std::ranges::any_of(info.notes, [](const Error& note) {
+    return note.kind == ErrorKind::kUnsupported || note.message.starts_with("MuJoCo: ");
+  });
   if (info.unsupported.empty() && not_drawn.hidden.empty() && !is_ignored)
     say("\neverything in the file is simulated and drawn\n");
 }

@@ -14,6 +14,7 @@
 #include "base/path_readings.h"
 #include "base/plain_text.h"
 #include "base/text.h"
+#include "scene/files/foreign_model.h"
 #include "scene/files/mujoco_guard.h"
 #include "scene/files/mujoco_hints.h"
 #include "scene/mjcf/spec_only.h"
@@ -212,6 +213,8 @@ Status ModelFiles::scan(const fs::path& file, const fs::path& model, const Sourc
   const std::string& text = **content;
   if (text.size() > kLargestModelText)
     return Error{ErrorKind::kInput, "the XML is larger than 64 MiB", {file.string(), 0, 0}};
+  if (std::optional<Error> foreign = find_foreign_text(text, file.string()))
+    return std::move(*foreign);
   Result<XmlScan> scanning = scan_model_xml(text, file.string());
   if (!scanning.ok()) {
     Error error = scanning.error();
@@ -286,10 +289,7 @@ Status ModelFiles::add_model(const fs::path& file, const FileAccess& access, con
   GLOAM_TRY_STATUS(scan(path, path, loc, stack));
   const std::string& top = scans_.at(path).root;
   if (top == "mujoco" || top == "robot") return {};
-  return Error{ErrorKind::kInput,
-               fmt::format("the top element is <{:.40}>, so this is neither MJCF nor URDF", top),
-               {path.string(), 1, 0},
-               "MJCF starts with <mujoco>, URDF with <robot>; <html> is a web page about the file"};
+  return foreign_element_error(top, path.string());
 }
 
 const std::string& ModelFiles::root_element(const fs::path& file) const {

@@ -15,6 +15,7 @@
 #include "base/path_readings.h"
 #include "geometry/mesh/model_file.h"
 #include "scene/files/model_path.h"
+#include "scene/files/urdf_ignored.h"
 #include "scene/files/xml_text.h"
 
 namespace gloam {
@@ -60,6 +61,8 @@ class Preparer {
     read_compiler(robot);
     UrdfText out;
     list_pictures(robot, &out.unsupported);
+    out.notes =
+        list_ignored_elements(robot, [&](const pugi::xml_node& node) { return loc_of(node); });
     GLOAM_TRY(const bool is_stock, stock_finds_all(robot));
     GLOAM_TRY_STATUS(resolve_meshes(robot, "collision", nullptr));
     const bool has_visuals = robot.select_node("link/visual") && !stock_keeps_visuals_;

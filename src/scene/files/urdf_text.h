@@ -33,6 +33,7 @@ struct UrdfText {
   std::vector<UrdfVisualMesh> visual_meshes;
   std::vector<UrdfMeshCopy> copies;
   std::vector<Error> unsupported;  ///< visuals that cannot be drawn, and where
+  std::vector<Error> notes;        ///< elements that are left out, and where
 };
 
 /// `exists` says whether a file may be read. `file` is the URDF's absolute path. Errors: not

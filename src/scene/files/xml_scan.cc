@@ -9,6 +9,7 @@
 #include <cstdlib>
 #include <functional>
 
+#include "scene/files/foreign_model.h"
 #include "scene/files/xml_text.h"
 
 namespace gloam {
@@ -197,6 +198,7 @@ Result<XmlScan> scan_model_xml(std::string_view text, const std::string& file) {
     return true;
   });
   GLOAM_TRY_STATUS(std::move(status));
+  if (scan.root == "robot") GLOAM_TRY_STATUS(check_is_urdf(document.document_element(), file));
   weigh(document.document_element(), lines, &scan.slowest);
   return scan;
 }

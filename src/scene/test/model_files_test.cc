@@ -138,7 +138,7 @@ TEST(ModelFiles, MissingAndWrongFilesAreNamed) {
   EXPECT_THAT(add_error(folder.write("i.xml", "<mujoco>\n<include file='no.xml'/></mujoco>")),
               HasSubstr("i.xml:2: 'no.xml' does not exist"));
   EXPECT_THAT(add_error(folder.write("t.xml", "hello")), HasSubstr("not well-formed"));
-  EXPECT_THAT(add_error(folder.write("h.xml", "<html/>")), HasSubstr("neither MJCF nor URDF"));
+  EXPECT_THAT(add_error(folder.write("h.xml", "<other/>")), HasSubstr("neither MJCF nor URDF"));
   EXPECT_THAT(add_error(folder.write("s.xml",
                                      "<mujoco><asset>\n<mesh file='http://x.y/a.stl'/>"
                                      "</asset></mujoco>")),

@@ -65,7 +65,7 @@ void visit_entry(F& f, CacheEntry& e) {
   f(e.lines.geoms), f(e.lines.sites), f(e.lines.tendons);
 }
 
-constexpr uint64_t kMagic = 0x43444C574D4F4C47ull;  // "GLOMWLDC": changes with the layout below
+constexpr uint64_t kMagic = 0x44444C574D4F4C47ull;  // "GLOMWLDD": changes with the layout below
 constexpr uint64_t kLargestEntry = uint64_t{2} << 30;
 
 fs::path entry_of(const Scene& scene, uint64_t place_hash) {

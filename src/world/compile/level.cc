@@ -18,6 +18,7 @@
 #include "scene/overrides.h"
 #include "world/compile/agent_writer.h"
 #include "world/compile/compile_progress.h"
+#include "world/compile/compiler_options.h"
 #include "world/compile/endless_compile.h"
 #include "world/compile/finite_model.h"
 #include "world/compile/level_cameras.h"
@@ -35,6 +36,14 @@ namespace {
 // library, whose std::string has another layout than mjString's declaration says here.
 void set_name(mjsElement* element, const std::string& name) {
   edit(mjs_setName, element, name.c_str());
+}
+
+// Several robots may be of one file.
+void add_once(const Error& note, std::vector<Error>* notes) {
+  const bool is_known = std::any_of(notes->begin(), notes->end(), [&](const Error& known) {
+    return known.message == note.message && known.loc.file == note.loc.file;
+  });
+  if (!is_known) notes->push_back(note);
 }
 
 // Reports warnings of MuJoCo's parser and compiler ("<mimic> on joint 'x' ignored"): those of its
@@ -72,6 +81,7 @@ Result<SpecPtr> parse_model(const fs::path& file, const FileAccess& access, Mode
     GLOAM_TRY(const UrdfText urdf,
               prepare_urdf(files->text(path), path, access,
                            [&](const fs::path& mesh) { return files->readable(mesh); }));
+    for (const Error& note : urdf.notes) add_once(note, notes);
     if (!urdf.physics.empty()) files->set_overlay(path, urdf.physics);
     GLOAM_TRY_STATUS(add_mesh_copies(urdf.copies, files));
   }
@@ -248,6 +258,10 @@ Result<Level> assemble(const Scene& scene, const std::optional<Place>& place,
   } else if (names_mjcf(scene.environment)) {
     GLOAM_TRY(level.spec,
               parse_model(scene.environment.file, scene.access, files, &level.notes, progress));
+    GLOAM_TRY_STATUS(settle_compiler_options(scene.environment.file, "the environment",
+                                             level.spec->compiler.LRopt, files, level.spec.get(),
+                                             &level.notes));
+    level.spec->compiler.fusestatic = 0;
   } else {
     level.spec.reset(mj_makeSpec());
     edit(mjs_setString, level.spec->modelname, scene.name.c_str());
@@ -269,6 +283,9 @@ Result<Level> assemble(const Scene& scene, const std::optional<Place>& place,
     GLOAM_TRY(SpecPtr child, parse_model(robot.file, scene.access, files, &level.notes, progress));
     GLOAM_TRY_STATUS(apply_overrides(scene.overrides, robot.name, child.get()));
     GLOAM_TRY_STATUS(free_base(robot, child.get()));
+    GLOAM_TRY_STATUS(settle_compiler_options(robot.file, fmt::format("robot '{}'", robot.name),
+                                             level.spec->compiler.LRopt, files, child.get(),
+                                             &level.notes));
     level.robots.push_back({robot, std::move(child), {}, {}});
     GLOAM_TRY_STATUS(attach_robot(level.spec.get(), &level.robots.back(), files));
   }
