@@ -51,6 +51,7 @@ struct Evaluation {
   ErrorParts absolute;
   std::optional<ErrorParts> relative;
   std::string no_relative;  // why there are none
+  std::vector<std::string> notes;
 };
 
 RelativeOptions relative_options(const EvaluateCommand& command) {
@@ -77,6 +78,8 @@ Result<Evaluation> evaluate(const EvaluateCommand& command) {
   Evaluation out;
   GLOAM_TRY(const Trajectory reference, load_trajectory(command.reference));
   GLOAM_TRY(const Trajectory estimate, load_trajectory(command.estimate));
+  for (const Trajectory* side : {&reference, &estimate})
+    out.notes.insert(out.notes.end(), side->notes.begin(), side->notes.end());
   out.reference_poses = reference.size();
   out.estimate_poses = estimate.size();
   GLOAM_TRY(out.pair, associate(reference, estimate, command.association));
@@ -128,7 +131,8 @@ void print_json(const EvaluateCommand& command, const Evaluation& found) {
                  {"translation_m", {X.p_AB.x, X.p_AB.y, X.p_AB.z}},
                  {"scale", X.scale}}},
                {"ate", parts_json(found.absolute)},
-               {"rpe", found.relative ? parts_json(*found.relative) : Json()}};
+               {"rpe", found.relative ? parts_json(*found.relative) : Json()},
+               {"notes", found.notes}};
   if (found.relative) {
     json["rpe"]["delta"] = command.delta.value_or(1);
     json["rpe"]["delta_unit"] = command.unit;
@@ -191,6 +195,7 @@ int run_evaluation(const EvaluateCommand& command, const Globals& globals) {
   if (!command.plot.empty())
     if (const Status written = write_plot(command, *found); !written.ok())
       return fail(written.error());
+  for (const std::string& note : found->notes) tell("gloam: note: {}\n", note);
   if (globals.json)
     print_json(command, *found);
   else

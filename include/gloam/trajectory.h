@@ -25,12 +25,15 @@ struct StampedPose {
 using RotationRows = std::array<double, 9>;
 
 /// Poses of a frame B in a frame A. Rotations are kept as matrices: those of KITTI files are
-/// orthonormal to their few digits only, and errors are computed from what the file says.
+/// orthonormal to their digits only, and errors are computed from the file's numbers, as evo does.
+/// Matrices that are off by more than 0.001 (three decimals and fewer) are replaced by the nearest
+/// rotation.
 struct Trajectory {
   std::string name;                     ///< file or topic, for messages
   std::vector<int64_t> stamps;          ///< [ns], never falling; empty = none, as in KITTI files
   std::vector<Vec3> positions;          ///< [m]
   std::vector<RotationRows> rotations;  ///< (as many)
+  std::vector<std::string> notes = {};  ///< corrections made to the file's numbers
 
   size_t size() const { return positions.size(); }
   /// Length of the way [m].
@@ -40,7 +43,7 @@ struct Trajectory {
 /// A TUM ("t x y z qx qy qz qw"), KITTI (12 numbers of a 3x4 matrix) or EuRoC (CSV: ns, x, y, z,
 /// qw, qx, qy, qz, …) file; which one is seen from its first line. Lines that begin with # are
 /// comments. Errors, by line: another number of fields, no finite number, a quaternion or matrix
-/// that is no rotation, time that goes back.
+/// that is no rotation nor one rounded to two decimals, time that goes back.
 Result<Trajectory> read_trajectory_file(const std::filesystem::path& file);
 Result<Trajectory> parse_trajectory(std::string_view text, const std::string& name);
 /// Errors: as of files; no pose.

@@ -3,6 +3,7 @@ from __future__ import annotations
 
 import os
 import tempfile
+import warnings
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -82,7 +83,10 @@ def _trajectory(source: Any, topic: str | None) -> Any:
     path = Path(source)
     if path.suffix == ".mcap":
         return _trajectory(Log(path), topic)
-    return _core.Trajectory.read(path)
+    read = _core.Trajectory.read(path)
+    for note in read.notes:
+        warnings.warn(note, stacklevel=3)
+    return read
 
 
 def evaluate(reference: Any, estimate: Any, alignment: str = "none", *, reference_topic: str | None = None, estimate_topic: str | None = None,

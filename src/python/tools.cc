@@ -110,6 +110,7 @@ void bind_tools(nb::module_& m) {
                   nb::arg("name") = "trajectory")
       .def_prop_ro("name", [](const Trajectory& t) { return t.name; })
       .def_prop_ro("path_length", &Trajectory::path_length)
+      .def_prop_ro("notes", [](const Trajectory& t) { return t.notes; })
       .def("__len__", &Trajectory::size);
   m.def("evaluate", &evaluate, nb::arg("reference"), nb::arg("estimate"),
         nb::arg("alignment") = "none", nb::arg("max_difference") = 0.01, nb::arg("delta") = 1.0);

@@ -16,7 +16,8 @@ namespace {
 constexpr uint64_t kMostFileBytes = uint64_t{1} << 30;
 constexpr double kMostMeters = 1e12;           // sums of squares of more leave the doubles' digits
 constexpr double kQuaternionTolerance = 0.01;  // of its length: files have four digits and up
-constexpr double kRotationTolerance = 0.001;   // of R Rᵀ
+constexpr double kRotationTolerance = 0.001;   // of R Rᵀ, within which a matrix is kept as it is
+constexpr double kRoundedRotation = 0.05;      // of R Rᵀ: rounded to two decimals, and drifted
 constexpr long double kMostSeconds = 4e9L;     // differences of nanoseconds fit into 64 bits
 
 enum class LineFormat { kUnknown, kTum, kKitti, kEuroc };
@@ -74,6 +75,7 @@ class TrajectoryParser {
     }
     if (out_.positions.empty())
       return Error{ErrorKind::kInput, "holds no pose", {out_.name, 0, 0}, kHint};
+    note_rough_matrices();
     return std::move(out_);
   }
 
@@ -129,9 +131,24 @@ class TrajectoryParser {
 
   Status add_matrix(const double* m) {
     const RotationRows R = {m[0], m[1], m[2], m[4], m[5], m[6], m[8], m[9], m[10]};
-    if (!(distance_from_rotation(R) <= kRotationTolerance))
-      return at_line("its 3x3 part is no rotation matrix");
-    return add({m[3], m[7], m[11]}, R);
+    const double distance = distance_from_rotation(R);
+    if (!(distance <= kRoundedRotation))
+      return at_line("its 3x3 part is no rotation matrix",
+                     "R Rᵀ must be the identity to 0.05, and R no reflection");
+    const bool is_rough = distance > kRotationTolerance;
+    if (is_rough) {
+      ++rough_;
+      roughest_ = std::max(roughest_, distance);
+    }
+    return add({m[3], m[7], m[11]}, is_rough ? rotation_of(nearest_quaternion(R)) : R);
+  }
+
+  void note_rough_matrices() {
+    if (rough_ == 0) return;
+    out_.notes.push_back(fmt::format(
+        "{}: the matrices of {} of {} poses are rotations to {:.2g} only: the nearest rotation was "
+        "taken; write more decimals",
+        out_.name, rough_, out_.size(), roughest_));
   }
 
   Status add_pose(const Vec3& p, const Quat& q) {
@@ -154,6 +171,8 @@ class TrajectoryParser {
   Trajectory out_;
   LineFormat format_ = LineFormat::kUnknown;
   int number_ = 0;
+  size_t rough_ = 0;  // matrices that were replaced
+  double roughest_ = 0;
 };
 
 }  // namespace

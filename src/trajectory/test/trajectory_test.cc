@@ -2,6 +2,7 @@
 
 #include "gloam/trajectory.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -10,6 +11,7 @@
 #include <numbers>
 
 #include "base/rng.h"
+#include "trajectory/rigid_pose.h"
 
 namespace gloam {
 namespace {
@@ -235,6 +237,43 @@ TEST(TrajectoryFile, OfEachFormatIsOneAndTheSame) {
     EXPECT_NEAR(euroc->rotations[0][i], kitti->rotations[0][i], 1e-15);
   }
   EXPECT_EQ(tum->positions, kitti->positions);
+}
+
+// Rotations by 1 rad about (1, 2, 3), written with `decimals`.
+std::string rounded_kitti(int decimals) {
+  const RotationRows R =
+      rotation_of({std::cos(0.5), std::sin(0.5) / std::sqrt(14.0),
+                   2 * std::sin(0.5) / std::sqrt(14.0), 3 * std::sin(0.5) / std::sqrt(14.0)});
+  std::string text;
+  for (size_t i = 0; i < 9; ++i) {
+    text += fmt::format("{:.{}f} ", R[i], decimals);
+    if (i % 3 == 2) text += fmt::format("{} ", i);
+  }
+  return text + "\n";
+}
+
+TEST(TrajectoryFile, RotationsOfFewDecimalsAreMadeRotationsWithANote) {
+  const auto exact = parse_trajectory(rounded_kitti(12), "x");
+  ASSERT_TRUE(exact.ok());
+  EXPECT_TRUE(exact->notes.empty());
+  for (const int decimals : {2, 3}) {
+    const auto read = parse_trajectory(rounded_kitti(decimals) + rounded_kitti(9), "x");
+    ASSERT_TRUE(read.ok()) << read.error().to_string();
+    EXPECT_LT(distance_from_rotation(read->rotations[0]), 1e-12);
+    const double angle = angle_of(
+        relative(nearest_quaternion(read->rotations[0]), nearest_quaternion(exact->rotations[0])));
+    EXPECT_LT(angle, std::pow(10, -decimals));
+    ASSERT_EQ(read->notes.size(), 1u) << decimals;
+    EXPECT_THAT(read->notes[0], HasSubstr("the matrices of 1 of 2 poses"));
+  }
+  // What is no rotation at all stays an error: mirrored, flat, sheared, scaled, of zeros.
+  for (const char* text :
+       {"-1 0 0 0 0 1 0 0 0 0 1 0\n", "1 0 0 0 0 1 0 0 0 0 0 0\n", "1 0.2 0 0 0 1 0 0 0 0 1 0\n",
+        "1.1 0 0 0 0 1.1 0 0 0 0 1.1 0\n", "0 0 0 0 0 0 0 0 0 0 0 0\n"}) {
+    const auto read = parse_trajectory(text, "x");
+    ASSERT_FALSE(read.ok()) << text;
+    EXPECT_THAT(read.error().to_string(), HasSubstr("x:1: its 3x3 part is no rotation matrix"));
+  }
 }
 
 TEST(TrajectoryFile, KeepsNanosecondsOfExponents) {
