@@ -99,7 +99,7 @@ class RobotIo:
             if len(found) != 1:
                 raise NotFoundError(
                     f"joint '{names[joint]}' has {'no actuator' if not len(found) else 'several actuators'}",
-                    hint="a policy drives each of its joints by one motor or position servo",
+                    hint="a policy drives each of its joints by one motor or position servo; docs/policies.md adds them",
                 )
             at.append(int(found[0]))
         self._actuators = np.array(at, dtype=np.intp)

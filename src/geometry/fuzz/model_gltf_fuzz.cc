@@ -1,3 +1,5 @@
+#include "base/test/custom_mutator.h"
+#include "base/test/json_mutator.h"
 #include "geometry/mesh/model_source.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
@@ -5,4 +7,9 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   options.limits.decoded_bytes = 64 << 20;
   (void)gloam::read_gltf({"fuzz.gltf", {data, size}, nullptr, &options}).ok();
   return 0;
+}
+
+extern "C" size_t LLVMFuzzerCustomMutator(uint8_t* data, size_t size, size_t max_size,
+                                          unsigned seed) {
+  return gloam::mutate_structure(data, size, max_size, seed, gloam::mutate_json);
 }

@@ -1,6 +1,8 @@
+#include "base/test/custom_mutator.h"
 #include "mcap/mcap_describe.h"
 #include "mcap/mcap_reader.h"
 #include "mcap/mcap_recover.h"
+#include "mcap/test/mcap_mutator.h"
 
 namespace {
 
@@ -32,4 +34,13 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   messages.seek(reader->statistics().end_time / 2);
   (void)messages.next().ok();
   return 0;
+}
+
+extern "C" size_t LLVMFuzzerCustomMutator(uint8_t* data, size_t size, size_t max_size,
+                                          unsigned seed) {
+  return gloam::mutate_structure(
+      data, size, max_size, seed, [](const std::string& log, unsigned seed) {
+        const gloam::McapBytes out = gloam::McapMutator(seed).mutate({log.begin(), log.end()});
+        return std::string(out.begin(), out.end());
+      });
 }

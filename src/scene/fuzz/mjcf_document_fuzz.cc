@@ -7,7 +7,10 @@
 #include <functional>
 #include <string_view>
 
+#include "base/test/custom_mutator.h"
 #include "gloam/mjcf.h"
+#include "scene/test/toml_mutator.h"
+#include "scene/test/xml_mutator.h"
 
 using gloam::Result;
 using gloam::mjcf::Document;
@@ -44,4 +47,13 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   const auto again = Document::from_toml(by_toml->to_toml());
   require(again.ok() && again->to_xml() == by_toml->to_xml(), again, by_toml->to_toml());
   return 0;
+}
+
+extern "C" size_t LLVMFuzzerCustomMutator(uint8_t* data, size_t size, size_t max_size,
+                                          unsigned seed) {
+  return gloam::mutate_structure(data, size, max_size, seed,
+                                 [](const std::string& text, unsigned seed) {
+                                   return text.starts_with('<') ? gloam::mutate_xml(text, seed)
+                                                                : gloam::mutate_toml(text, seed);
+                                 });
 }

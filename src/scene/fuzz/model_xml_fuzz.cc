@@ -5,8 +5,10 @@
 #include <cstdlib>
 #include <string>
 
+#include "base/test/custom_mutator.h"
 #include "scene/files/urdf_text.h"
 #include "scene/files/xml_scan.h"
+#include "scene/test/xml_mutator.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   const std::string text(reinterpret_cast<const char*>(data), size);
@@ -23,4 +25,9 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   const auto exists = [&](const std::filesystem::path&) { return answer = !answer; };
   (void)gloam::prepare_urdf(text, "/models/fuzz.urdf", {}, exists).ok();
   return 0;
+}
+
+extern "C" size_t LLVMFuzzerCustomMutator(uint8_t* data, size_t size, size_t max_size,
+                                          unsigned seed) {
+  return gloam::mutate_structure(data, size, max_size, seed, gloam::mutate_xml);
 }

@@ -4,7 +4,9 @@
 #include <cstdlib>
 #include <string>
 
+#include "base/test/custom_mutator.h"
 #include "scene/randomize/randomize.h"
+#include "scene/test/toml_mutator.h"
 #include "scene/toml/toml_reader.h"
 #include "scene/validate/validate.h"
 
@@ -32,4 +34,9 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
         .ok();
   }
   return 0;
+}
+
+extern "C" size_t LLVMFuzzerCustomMutator(uint8_t* data, size_t size, size_t max_size,
+                                          unsigned seed) {
+  return gloam::mutate_structure(data, size, max_size, seed, gloam::mutate_toml);
 }
