@@ -66,6 +66,8 @@ std::string verdict(const ModelCheck& check) {
   else
     text += of_stock(check);
   add("its export", check.unlike_export);
+  if (!check.export_reason.empty())
+    text += "; MJCF cannot say this level exactly: " + check.export_reason;
   return text.substr(2);
 }
 
@@ -87,6 +89,7 @@ Json as_json(const std::string& file, const ModelCheck& check, double seconds) {
                {"stock_loads", nullptr},
                {"differs_from_stock", check.unlike_stock},
                {"differs_from_export", check.unlike_export},
+               {"export_error", check.export_reason},
                {"export_bytes", check.export_bytes},
                {"seconds", seconds}};
   if (check.stock_refusal) {

@@ -41,6 +41,7 @@ struct ModelCheck {
   std::optional<std::string> stock_refusal;
   std::vector<std::string> unlike_stock;   ///< fields that are not what stock MuJoCo makes of them
   std::vector<std::string> unlike_export;  ///< fields that stock MuJoCo reads back differently
+  std::string export_reason;               ///< reason why the export is not exact, "" if it is
   uint64_t export_bytes = 0;               ///< size of all files written
 
   bool passed() const { return status.ok() && unlike_stock.empty() && unlike_export.empty(); }

@@ -45,6 +45,7 @@ nb::dict check_file(const std::filesystem::path& file, const std::filesystem::pa
   made["compared"] = result.compared;
   made["unlike_stock"] = result.unlike_stock;
   made["unlike_export"] = result.unlike_export;
+  made["export_reason"] = result.export_reason;
   return made;
 }
 

@@ -118,6 +118,7 @@ ModelCheck check_model(const fs::path& file, const FileAccess& access, const fs:
   }
   check.compared = exported->compared;
   check.unlike_export = exported->differing;
+  check.export_reason = exported->why;
   check.export_bytes = bytes_below(folder);
   if (exported->compared == 0)  // MuJoCo does not load what it wrote
     check.status = Error{ErrorKind::kUnsupported, exported->why};

@@ -150,11 +150,11 @@ TEST_F(PropsEverywhere, RefuseABodyOrJointWhoseNameIsTaken) {
                 "<body name='box/lid'><geom size='.1'/></body></worldbody></mujoco>");
   const std::string place = "[environment]\nfile = 'place.xml'\n";
   const Result<World> joint =
-      compile(place + "[[prop]]\nname = 'ball'\nkind = 'ball'\nloose = true\n");
+      compile(place + "[[prop]]\nname = 'ball'\nkind = 'toy_ball'\nloose = true\n");
   ASSERT_FALSE(joint.ok());
   EXPECT_NE(joint.error().message.find("has a joint 'ball' already"), std::string::npos)
       << joint.error().to_string();
-  const Result<World> body = compile(place + "[[prop]]\nname = 'a'\nkind = 'ball'\n");
+  const Result<World> body = compile(place + "[[prop]]\nname = 'a'\nkind = 'toy_ball'\n");
   ASSERT_FALSE(body.ok());
   EXPECT_NE(body.error().message.find("has a body 'a' already"), std::string::npos);
 }
