@@ -4,7 +4,9 @@
 
 #include <cstdio>
 #include <filesystem>
+#include <fstream>
 #include <nlohmann/json.hpp>
+#include <string_view>
 
 #include "gloam/log.h"
 #include "gloam/topics.h"
@@ -13,7 +15,14 @@
 
 namespace gloam::cli {
 
-bool is_log(const std::string& file) { return std::filesystem::path(file).extension() == ".mcap"; }
+bool is_log(const std::string& file) {
+  if (std::filesystem::path(file).extension() == ".mcap") return true;
+  constexpr std::string_view kMagic("\x89MCAP0\r\n");
+  char head[8] = {};
+  std::ifstream stream(file, std::ios::binary);
+  stream.read(head, sizeof(head));
+  return std::string_view(head, static_cast<size_t>(stream.gcount())) == kMagic;
+}
 
 int report_log(const std::string& file, const Globals& globals) {
   const auto log = describe_log(file);
@@ -43,6 +52,7 @@ int report_log(const std::string& file, const Globals& globals) {
       static_cast<double>(log->bytes) / (1 << 20), log->messages, log->chunks, log->compression,
       log->duration, log->profile, log->library);
   if (log->has_run) say("a run of scene '{}': `gloam replay {} --verify`\n", log->scene, file);
+  if (log->messages == 0) say("the log is empty: it has no messages\n");
   if (!log->damage.empty()) say("damaged: {}: `gloam recover {}`\n", log->damage, file);
   say("\n  {:<40} {:<36} {:>9} {:>9}\n", "topic", "type", "messages", "rate");
   for (const LoggedTopic& topic : log->topics)

@@ -1,5 +1,7 @@
 #include "trajectory_source.h"
 
+#include <filesystem>
+
 #include "gloam/log_export.h"
 #include "log_report.h"
 
@@ -19,7 +21,12 @@ Result<std::string> only_pose_topic(const std::string& log) {
 Result<Trajectory> load_trajectory(const std::string& source) {
   const size_t split = source.find(":/");
   const std::string file = source.substr(0, split);
-  if (!is_log(file)) return read_trajectory_file(source);
+  if (!is_log(file)) {
+    // "a.bag:/odom" is a topic of what is taken for a log; a file may also have a colon in its
+    // name.
+    std::error_code code;
+    return read_trajectory_file(std::filesystem::exists(source, code) ? source : file);
+  }
   std::string topic;
   if (split != std::string::npos) {
     topic = source.substr(split + 1);

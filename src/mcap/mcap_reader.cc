@@ -4,12 +4,14 @@
 
 #include <utility>
 
+#include "base/foreign_format.h"
 #include "base/memory.h"
 #include "mcap/mcap_decode.h"
 
 namespace gloam {
 
 Result<McapReader> McapReader::open(const std::filesystem::path& path, const McapLimits& limits) {
+  GLOAM_TRY_STATUS(refuse_foreign_format(path));
   GLOAM_TRY(std::shared_ptr<const LogSource> source, open_log_file(path));
   return open(std::move(source), limits);
 }

@@ -8,6 +8,7 @@
 #include <set>
 #include <utility>
 
+#include "base/foreign_format.h"
 #include "mcap/log_sink.h"
 #include "mcap/mcap_catalog.h"
 #include "mcap/mcap_decode.h"
@@ -181,6 +182,7 @@ Result<McapRecovery> recover_log(const LogSource& source, const McapLimits& limi
 
 Result<McapRecovery> recover_log_file(const std::filesystem::path& from,
                                       const std::filesystem::path& to) {
+  GLOAM_TRY_STATUS(refuse_foreign_format(from));
   GLOAM_TRY(const std::shared_ptr<const LogSource> source, open_log_file(from));
   uint64_t begin = 0;
   GLOAM_TRY(const McapHeader header, read_header(*source, &begin));

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "base/files.h"
+#include "base/foreign_format.h"
 #include "base/text.h"
 #include "trajectory/rigid_pose.h"
 
@@ -188,6 +189,7 @@ Result<Trajectory> parse_trajectory(std::string_view text, const std::string& na
 }
 
 Result<Trajectory> read_trajectory_file(const std::filesystem::path& file) {
+  GLOAM_TRY_STATUS(refuse_foreign_format(file));
   GLOAM_TRY(const std::string text, read_text_file(file, kMostFileBytes));
   return parse_trajectory(text, file.string());
 }

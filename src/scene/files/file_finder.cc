@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "base/files.h"
+#include "base/foreign_format.h"
 #include "base/plain_text.h"
 #include "base/text.h"
 
@@ -41,6 +42,7 @@ std::string suggest_file(const fs::path& missing) {
 }
 
 Status check_model_file(const fs::path& path, const std::string& as_written, const SourceLoc& loc) {
+  if (!is_container(path)) GLOAM_TRY_STATUS(refuse_foreign_format(path, loc));
   GLOAM_TRY_STATUS(check_file(path, as_written, loc));
   const std::string name = as_written.substr(0, 200);
   if (lower_extension(path) == ".toml") {
