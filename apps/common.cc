@@ -12,6 +12,7 @@
 #include <memory>
 
 #include "command.h"
+#include "gloam/topics.h"
 #include "interrupt.h"
 #include "print.h"
 
@@ -134,6 +135,7 @@ Result<World> compile(const Scene& scene, const Globals& globals, const std::str
   finish_progress();
   if (!world.ok()) return world;
   tell_all("note", world->notes());
+  tell_all("note", topic_notes(*world));
   tell_all("warning: not supported", world->unsupported());
   return world;
 }

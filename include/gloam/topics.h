@@ -45,6 +45,9 @@ Result<MessageInfo> message_info(std::string_view type);
 /// Topics of a World. Error: a [[topic]] of its scene that fits none.
 Result<std::vector<TopicInfo>> list_topics(const World& world);
 
+/// Topics of elements that do not have the names of the rules, since these were taken.
+std::vector<Error> topic_notes(const World& world);
+
 /// One message. What it refers to lives as long as the callback.
 struct TopicMessage {
   const TopicInfo& topic;

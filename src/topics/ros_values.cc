@@ -19,6 +19,7 @@ std_msgs::Header ros_header(double time, std::string_view frame_id) {
 }
 
 std::string topic_token(std::string_view name) {
+  constexpr size_t kLongest = 180;  // ROS 2 allows 247 characters of a whole name
   std::string token;
   for (const char c : name) {
     const bool begins = token.empty() || token.back() == '/';
@@ -29,8 +30,12 @@ std::string topic_token(std::string_view name) {
     const auto byte = static_cast<unsigned char>(c);
     const bool fits = std::isalnum(byte) != 0 && byte < 0x80;
     if (begins && std::isdigit(byte) != 0) token += '_';
-    token += fits ? c : '_';
+    if (fits)
+      token += c;
+    else if (begins || token.back() != '_')  // ROS 2 has no two underscores in a row
+      token += '_';
   }
+  token.resize(std::min(token.size(), kLongest));
   while (!token.empty() && token.back() == '/') token.pop_back();
   return token.empty() ? "_" : token;
 }

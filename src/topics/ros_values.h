@@ -27,7 +27,7 @@ inline Pose from_ros(const geometry_msgs::Pose& pose) {
 }
 
 /// A name of an element as a part of a topic's name: letters, digits, '_' and '/', none of its
-/// tokens empty or beginning with a digit.
+/// tokens empty or beginning with a digit, no two '_' in a row, at most 180 characters.
 std::string topic_token(std::string_view name);
 
 }  // namespace gloam

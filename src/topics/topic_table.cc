@@ -8,6 +8,7 @@
 #include "base/text.h"
 #include "geometry/mesh/single.h"
 #include "ros/message_types.h"
+#include "topics/topic_names.h"
 #include "world/view/render_origin.h"
 #include "world/world.h"
 
@@ -25,6 +26,14 @@ std::vector<std::string> names_of(const TopicTable& table) {
   std::vector<std::string> names;
   for (const Topic& topic : table) names.push_back(topic.info.name);
   return names;
+}
+
+// Line of the last [[topic]] that gives a topic this name.
+SourceLoc loc_of_rename(const Scene& scene, const std::string& name) {
+  SourceLoc loc;
+  for (const TopicOptions& options : scene.topics)
+    if (options.rename == name) loc = options.loc;
+  return loc;
 }
 
 }  // namespace
@@ -59,9 +68,21 @@ Result<std::vector<const Topic*>> find_topics(const TopicTable& table, const std
                suggest_name(pattern, names_of(table))};
 }
 
-Result<TopicTable> make_topic_table(const std::shared_ptr<const CompiledWorld>& world) {
+namespace {
+
+// By the rules alone, without the scene's [[topic]]s.
+TopicTable table_by_rules(const TopicSource& world, std::vector<Error>* notes) {
   TopicTable table;
   for (const auto add : kKinds) add(world, &table);
+  make_names_unique(&table, notes);
+  return table;
+}
+
+}  // namespace
+
+Result<TopicTable> make_topic_table(const std::shared_ptr<const CompiledWorld>& world) {
+  std::vector<Error> notes;
+  TopicTable table = table_by_rules(world, &notes);
   // A later line wins, as elsewhere in scenes; names are those of the rules.
   const std::vector<std::string> names = names_of(table);
   std::vector<bool> is_off(table.size());
@@ -88,11 +109,16 @@ Result<TopicTable> make_topic_table(const std::shared_ptr<const CompiledWorld>& 
     if (!taken.insert(table[i].info.name).second)
       return Error{ErrorKind::kInput,
                    fmt::format("two topics would have the name '{}'", table[i].info.name),
-                   {},
-                   "rename one by a [[topic]]"};
+                   loc_of_rename(world->scene, table[i].info.name), "choose another `rename`"};
     on.push_back(std::move(table[i]));
   }
   return on;
+}
+
+std::vector<Error> topic_notes(const World& world) {
+  std::vector<Error> notes;
+  table_by_rules(world.compiled(), &notes);
+  return notes;
 }
 
 Result<std::vector<TopicInfo>> list_topics(const World& world) {

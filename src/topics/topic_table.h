@@ -9,8 +9,9 @@ namespace gloam {
 
 using TopicTable = std::vector<Topic>;
 
-/// Topics by the default rules, changed as the scene's [[topic]]s say, without those that are off.
-/// Errors: a [[topic]] that fits none; two topics of one name.
+/// Topics by the default rules, with names of their own (topic_names.h), changed as the scene's
+/// [[topic]]s say, without those that are off. Errors: a [[topic]] that fits none; two topics of
+/// one name because of a [[topic]].
 Result<TopicTable> make_topic_table(const std::shared_ptr<const CompiledWorld>& world);
 
 /// Rows of a table whose names fit a name or pattern; * stands for any text. Error: none does.
