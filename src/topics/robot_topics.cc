@@ -31,9 +31,12 @@ JointList joints_of(const mjModel& m, const RobotInstance& robot) {
   return joints;
 }
 
+// Effort is what the actuators apply to the joint at this state, mjData::qfrc_actuator.
 InstantEncoder joint_states(JointList joints) {
-  return [joints = std::move(joints)](const TopicInfo& topic, TopicInstant& at, MessageBytes* out) {
+  return [joints = std::move(joints)](const TopicInfo& topic, TopicInstant& at,
+                                      MessageBytes* out) -> Status {
     const Snapshot& now = at.snapshot();
+    GLOAM_TRY(const Instant* forces, at.forces());
     sensor_msgs::JointState message;
     message.header = ros_header(now.time(), topic.frame_id);
     message.name = joints.names;
@@ -41,9 +44,10 @@ InstantEncoder joint_states(JointList joints) {
       const JointState state = now[Joint{id, 0}];
       message.position.push_back(state.position());
       message.velocity.push_back(state.velocity());
+      message.effort.push_back(forces->data()->qfrc_actuator[at.model().jnt_dofadr[id]]);
     }
     encode(message, out);
-    return Status();
+    return {};
   };
 }
 
