@@ -14,6 +14,7 @@
 #include "topics/topic_table.h"
 #include "topics/topic_video.h"
 #include "world/streams.h"
+#include "world/world.h"
 
 namespace gloam {
 namespace {
@@ -55,19 +56,43 @@ Status encode_rgb_jpeg(const TopicInfo& topic, const CameraFrame& frame, Message
   return {};
 }
 
-Status encode_info(const TopicInfo& topic, const CameraFrame& frame, MessageBytes* out) {
-  const CameraInfo from = camera_info(frame.camera, frame.intrinsics);
-  sensor_msgs::CameraInfo info;
-  info.header = ros_header(frame.time, topic.frame_id);
-  info.width = static_cast<uint32_t>(from.width);
-  info.height = static_cast<uint32_t>(from.height);
-  info.distortion_model = from.distortion_model;
-  info.d = from.d;
-  info.k = from.k;
-  info.r = from.r;
-  info.p = from.p;
-  encode(info, out);
-  return {};
+// `baseline`: of the right eye of a stereo pair, its distance from the left one [m]; else 0.
+// Pictures of a pair are rectified as they are: the eyes are alike, parallel and without
+// distortion.
+FrameEncoder info_encoder(double baseline) {
+  return [baseline](const TopicInfo& topic, const CameraFrame& frame, MessageBytes* out) {
+    const CameraInfo from = camera_info(frame.camera, frame.intrinsics);
+    sensor_msgs::CameraInfo info;
+    info.header = ros_header(frame.time, topic.frame_id);
+    info.width = static_cast<uint32_t>(from.width);
+    info.height = static_cast<uint32_t>(from.height);
+    info.distortion_model = from.distortion_model;
+    info.d = from.d;
+    info.k = from.k;
+    info.r = from.r;
+    info.p = from.p;
+    if (baseline > 0) info.p[3] = -info.p[0] * baseline;
+    encode(info, out);
+    return Status();
+  };
+}
+
+const CameraOptions* find_camera(const Scene& scene, const std::string& name) {
+  const auto found = std::ranges::find(scene.cameras, name, &CameraOptions::name);
+  return found != scene.cameras.end() ? &*found : nullptr;
+}
+
+/// Distance of a right eye from its left one [m]; 0 of all other cameras.
+double stereo_baseline(const CompiledWorld& world, const std::string& camera) {
+  for (const StereoOptions& rig : world.written.stereo) {
+    if (camera != rig.name + "/right") continue;
+    const CameraOptions* left = find_camera(world.scene, rig.name + "/left");
+    const CameraOptions* right = find_camera(world.scene, camera);
+    if (left == nullptr || right == nullptr) return 0;
+    const Vec3 &a = left->position, &b = right->position;
+    return std::hypot(b.x - a.x, b.y - a.y, b.z - a.z);
+  }
+  return 0;
 }
 
 // REP 118: metres as 32FC1 with +inf where nothing is hit.
@@ -159,12 +184,12 @@ const std::vector<CameraTopicKind>& camera_topic_kinds() {
       // A picture that is lost on the way spoils those after it: reliable.
       {"image_raw/h264", "rgb", type_name<foxglove_msgs::CompressedVideo>, false,
        FrameEncoderMaker(h264_encoder), TopicQos{}},
-      {"camera_info", "rgb", type_name<sensor_msgs::CameraInfo>, true, encode_info},
+      {"camera_info", "rgb", type_name<sensor_msgs::CameraInfo>, true, info_encoder(0)},
       {"depth/image_rect_raw", "depth", image, false,
        [](Info t, Frame f, MessageBytes* out) { return encode_depth(t, f.depth, f, out); }},
       {"depth/image_rect_mm", "depth", image, false,
        [](Info t, Frame f, MessageBytes* out) { return encode_depth_mm(t, f.depth, f, out); }},
-      {"depth/camera_info", "depth", type_name<sensor_msgs::CameraInfo>, false, encode_info},
+      {"depth/camera_info", "depth", type_name<sensor_msgs::CameraInfo>, false, info_encoder(0)},
       {"sensor_depth/image_rect_raw", "sensor_depth", image, false,
        [](Info t, Frame f, MessageBytes* out) { return encode_depth(t, f.sensor_depth, f, out); }},
       {"sensor_depth/image_rect_mm", "sensor_depth", image, true,
@@ -186,6 +211,7 @@ const std::vector<CameraTopicKind>& camera_topic_kinds() {
 void add_camera_topics(const TopicSource& world, TopicTable* table) {
   for (const StreamInfo& stream : list_streams(*world)) {
     if (stream.kind != StreamKind::kCamera) continue;
+    const double baseline = stereo_baseline(*world, stream.name);
     for (const CameraTopicKind& kind : camera_topic_kinds()) {
       if (std::ranges::find(stream.outputs, kind.channel) == stream.outputs.end()) continue;
       Topic& topic = table->emplace_back();
@@ -199,6 +225,8 @@ void add_camera_topics(const TopicSource& world, TopicTable* table) {
       topic.streams = {stream.name};
       topic.channel = kind.channel;
       topic.code = kind.code;
+      if (topic.info.type == type_name<sensor_msgs::CameraInfo>() && baseline > 0)
+        topic.code = info_encoder(baseline);
     }
   }
 }
