@@ -49,13 +49,42 @@ Status SensorGroup::open_probes(const std::shared_ptr<const CompiledWorld>& worl
   return {};
 }
 
-std::function<int64_t(int64_t step)> SensorGroup::due() const {
-  std::vector<SensorTiming> timings;
-  for (const Member& member : members_) timings.push_back(member.timing);
-  return [timings = std::move(timings)](int64_t step) {
+namespace {
+
+// The first step at or after `step` at which a sensor has a sample that is used.
+int64_t next_sample(const SensorTiming& timing, const std::function<int64_t(int64_t)>& used,
+                    int64_t step) {
+  constexpr int kTries = 32;
+  int64_t next = timing.step_of(timing.first_at_or_after(step));
+  for (int i = 0; used && i < kTries; ++i) {
+    const int64_t wanted = used(next);
+    if (wanted == next) break;
+    next = timing.step_of(timing.first_at_or_after(wanted));
+  }
+  return next;
+}
+
+}  // namespace
+
+std::function<int64_t(int64_t step)> SensorGroup::due(
+    std::function<int64_t(int64_t step)> used) const {
+  struct Part {
+    SensorTiming timing;
+    int64_t lag;
+  };
+  std::vector<Part> parts;  // many sensors have the same steps
+  for (const Member& member : members_) {
+    const auto is_same = [&member](const Part& part) {
+      return part.lag == member.lag() && part.timing.same_steps(member.timing);
+    };
+    if (std::ranges::none_of(parts, is_same)) parts.push_back({member.timing, member.lag()});
+  }
+  return [parts = std::move(parts), used = std::move(used)](int64_t step) {
     int64_t next = std::numeric_limits<int64_t>::max();
-    for (const SensorTiming& timing : timings)
-      next = std::min(next, timing.step_of(timing.first_at_or_after(step)));
+    for (const Part& part : parts) {
+      const int64_t from = std::max<int64_t>(0, step - part.lag);
+      next = std::min(next, next_sample(part.timing, used, from) + part.lag);
+    }
     return next;
   };
 }
@@ -86,11 +115,13 @@ Status SensorGroup::sample(const Snapshot& snapshot, const SensorCallback& deliv
   const SnapshotData& data = snapshot.data();
   if (instant_ != nullptr) instant_->follow(snapshot);
   for (Member& member : members_) {
-    const int64_t k = member.timing.first_at_or_after(data.step);
-    if (member.timing.step_of(k) != data.step || member.timing.dropped(k)) continue;
+    const int64_t step = data.step - member.lag();
+    if (step < 0) continue;
+    const int64_t k = member.timing.first_at_or_after(step);
+    if (member.timing.step_of(k) != step || member.timing.dropped(k)) continue;
     SensorMessage& message = member.message;
     message.index = k;
-    message.step = data.step;
+    message.step = step;
     GLOAM_TRY_STATUS(read(snapshot, &member));
     // It cannot arrive before the step is done that it comes with.
     message.delivery = std::max(data.time, member.timing.delivery_of(k, message.time));

@@ -25,13 +25,16 @@ class SensorGroup {
   Status open_probes(const std::shared_ptr<const CompiledWorld>& world,
                      const ProbeSources& sources);
 
-  /// For SubscriptionOptions::due: the steps at which at least one of them has a sample.
-  std::function<int64_t(int64_t step)> due() const;
+  /// For SubscriptionOptions::due: the steps whose Snapshots hold a sample of at least one of them
+  /// that was taken at a step which is `used`: the first such step at or after the one given; empty
+  /// = all are. Where a sensor's samples and the used steps hardly ever meet, some Snapshots
+  /// without a sample are among them: nothing is delivered then.
+  std::function<int64_t(int64_t step)> due(std::function<int64_t(int64_t step)> used = {}) const;
 
   /// True if `other` takes its samples at the same steps.
   bool same_steps(const SensorGroup& other) const;
 
-  /// Calls `deliver` with every sample that was taken at the Snapshot's step and is not dropped.
+  /// Calls `deliver` with every sample that the Snapshot holds and that is not dropped.
   /// A Snapshot before the last one begins anew. Error: a probe that cannot be read.
   Status sample(const Snapshot& snapshot, const SensorCallback& deliver);
 
@@ -42,6 +45,10 @@ class SensorGroup {
     std::unique_ptr<SignalModel> model;  // null: the truth
     ProbeReader read;                    // of a probe, else empty
     SensorMessage message;               // its memory is used again
+    /// Steps between a sample and the Snapshot that holds it. MuJoCo computes its sensors in the
+    /// step that follows, from the state before: a sample has the stamp of its own step, as topics
+    /// of poses have, and comes with the next Snapshot.
+    int64_t lag() const { return description.probe >= 0 ? 0 : 1; }
   };
   Status read(const Snapshot& snapshot, Member* member);
 

@@ -21,23 +21,6 @@ Result<SensorDescription> find_sensor(const std::vector<SensorDescription>& sens
                suggest_name(name, names)};
 }
 
-// Steps at which a sensor has a sample and the reader uses it. Where the two hardly ever meet, some
-// of those without a sample are among them: nothing is delivered then.
-std::function<int64_t(int64_t)> both_due(std::function<int64_t(int64_t)> sampled,
-                                         std::function<int64_t(int64_t)> used) {
-  constexpr int kTries = 32;
-  if (!used) return sampled;
-  return [sampled = std::move(sampled), used = std::move(used)](int64_t step) {
-    int64_t next = sampled(step);
-    for (int i = 0; i < kTries; ++i) {
-      const int64_t wanted = used(next);
-      if (wanted == next) break;
-      next = sampled(wanted);
-    }
-    return next;
-  };
-}
-
 }  // namespace
 
 Result<std::unique_ptr<LiveSensors>> LiveSensors::open(Simulator& simulator, uint64_t seed,
@@ -51,7 +34,7 @@ Result<std::unique_ptr<LiveSensors>> LiveSensors::open(Simulator& simulator, uin
   GLOAM_TRY(live->group_, live->group_of(wanted.sensors, *live->world_, simulator.timestep()));
   GLOAM_TRY_STATUS(live->group_.open_probes(live->world_, live->sources_));
   SubscriptionOptions options;
-  options.due = both_due(live->group_.due(), wanted.used);
+  options.due = live->group_.due(wanted.used);
   options.required = wanted.required;
   options.capacity = 64;
   options.batch = wanted.batch;

@@ -60,19 +60,20 @@ std::vector<SensorMessage> stream(const World& world, const std::string& sensor,
   return messages;
 }
 
-// v = -g t at the stamp, which is one step before the step that the message comes with.
+// v = -g t at the stamp, that of the sample's step. It is computed in the step that follows, and
+// comes with the Snapshot after that.
 TEST(LiveSensors, WithoutAModelValuesAreMujocosAtTheTimeOfTheirState) {
   const TempFolder folder;
   const World world = lab(folder, "");
   const auto messages = stream(world, "a/velocity", 100);
-  ASSERT_EQ(messages.size(), 101u) << "one at every step";
+  ASSERT_EQ(messages.size(), 100u) << "one at every step that is done";
   for (const SensorMessage& m : messages) {
     EXPECT_EQ(m.index, m.step);
-    EXPECT_NEAR(m.time, m.step == 0 ? 0 : 0.002 * static_cast<double>(m.step - 1), 1e-12);
+    EXPECT_NEAR(m.time, 0.002 * static_cast<double>(m.step), 1e-12);
     EXPECT_NEAR(m.values.at(2), -9.81 * m.time, 1e-9);
-    EXPECT_NEAR(m.delivery, 0.002 * static_cast<double>(m.step), 1e-12);
+    EXPECT_NEAR(m.delivery, 0.002 * static_cast<double>(m.step + 1), 1e-12);
   }
-  EXPECT_EQ(stream(world, "sensor_2", 3).size(), 4u) << "one without a name";
+  EXPECT_EQ(stream(world, "sensor_2", 3).size(), 3u) << "one without a name";
 }
 
 TEST(LiveSensors, AModelAddsRateErrorsLatencyAndDrops) {
@@ -88,7 +89,7 @@ noise = 0.01
 resolution = 0.001
 timing = { latency = 0.05, latency_jitter = 0.001, drop = 0.2, phase = "1/1000" }
 )");
-  EXPECT_EQ(stream(world, "a/velocity", 500).size(), 51u) << "the first table's";
+  EXPECT_EQ(stream(world, "a/velocity", 500).size(), 50u) << "the first table's";
   const auto messages = stream(world, "a/encoder", 5000);
   EXPECT_NEAR(static_cast<double>(messages.size()), 800, 3 * std::sqrt(1000 * 0.16));
   double square = 0;
@@ -339,7 +340,7 @@ tier = "direct"
   EXPECT_EQ(line, "sample,step,time_s,delivery_s,value_0");
   int rows = 0;
   while (std::getline(file, line)) ++rows;
-  EXPECT_EQ(rows, 51);
+  EXPECT_EQ(rows, 50);
   EXPECT_TRUE(std::filesystem::exists(request.out / "sensors" / "a_velocity.csv"));
   const auto camera = request.out / "a_eye";
   EXPECT_TRUE(std::filesystem::exists(camera / "raw" / "000003.png"));

@@ -134,7 +134,7 @@ TEST(RecompileSensing, ExposureGoesOnAndEventsBeginAnew) {
     EXPECT_NEAR(static_cast<double>(frame->events.size()), each * kPixels, 0.25 * kPixels * each)
         << "frame " << frame->index;
   }
-  ASSERT_EQ(messages.all().size(), 46u);
+  ASSERT_EQ(messages.all().size(), 45u) << "0 … 440: that of step 450 comes with the next";
   for (size_t i = 0; i < messages.all().size(); ++i) {
     const SensorMessage& message = messages.all()[i];
     EXPECT_EQ(message.index, static_cast<int64_t>(i));
