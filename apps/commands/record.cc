@@ -64,7 +64,8 @@ void add_record(CLI::App& app, Globals& globals, Action& action) {
   sub->add_flag("--overwrite", command->overwrite, "Replace an existing log");
   sub->add_flag("--durable", command->durable,
                 "Sync each chunk to the disk: outlives a loss of power, too");
-  sub->add_flag("--embed", command->embed, "Put the models' files into the log");
+  sub->add_flag("--embed", command->embed,
+                "Put all files of the scene into the log, to replay it on any machine");
   sub->add_flag("--realtime", command->realtime,
                 "Pace by the wall clock; a slow disk then loses messages");
   sub->add_option("--speed", command->speed, "Simulated seconds per second, with --realtime")

@@ -141,7 +141,8 @@ void add_replay(CLI::App& app, Globals& globals, Action& action) {
   sub->add_flag("--verify", command->verify,
                 "Compare every logged state and hash: 0 of N steps differ");
   sub->add_option("--folder", command->folder,
-                  "Where the scene's files are; default: where they were");
+                  "Folder of the scene's files, or one above it; default: beside the log or where "
+                  "they were on this machine");
   sub->add_option("--run", command->run, "Which run of the log, from 0: a reset ends one");
   sub->add_flag("--poses", command->poses,
                 "Take bodies' poses from the logged states, do not step the run again");

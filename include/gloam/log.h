@@ -26,7 +26,7 @@ struct LogRequest {
   int width = 0, height = 0;             ///< of every camera's pictures [px]; 0 = the camera's own
   bool required = true;            ///< the simulation waits for the disk; else messages are lost
   bool durable = false;            ///< each chunk is synced before the next is written
-  bool embed = false;              ///< with the files that the scene reads
+  bool embed = false;              ///< with all files that the scene reads
   Rational state_rate = {100, 1};  ///< states per second of simulation time [Hz]
 };
 
@@ -75,8 +75,9 @@ struct LogVerification {
   bool is_equal() const { return differing == 0; }
 };
 /// Steps the runs of a log again, from its scene and Commands, and compares all states and hashes.
-/// `folder`: where the scene's files are now; empty = where they were. Errors: a stranger's log, a
-/// scene that no longer compiles, files or a model that have changed (which), another version.
+/// `folder`: the scene's or one above it; empty = beside the log, or where they were on this
+/// machine (docs/logs.md). Errors: a stranger's log, a scene that no longer compiles, files or a
+/// model that have changed (which) or are not to be found, another version.
 Result<LogVerification> verify_log(const std::filesystem::path& file,
                                    const std::filesystem::path& folder,
                                    const ProgressCallback& progress);

@@ -24,7 +24,7 @@ enum class ReplayMotion : uint8_t {
 
 struct LogReplay {
   std::filesystem::path log;
-  std::filesystem::path folder = {};  ///< where the scene's files are; empty = where they were
+  std::filesystem::path folder = {};  ///< of the scene's files, as of verify_log
   int64_t run = 0;                    ///< place of the run in the log, from 0: a reset ends one
   ReplayMotion motion = ReplayMotion::kStepped;
   /// Scene files that change the scene (overlay_scene), in this order, before `settings`: cameras,

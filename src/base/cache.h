@@ -29,6 +29,7 @@ inline constexpr CacheFormat kModelCache{"models", ".world",
 inline constexpr CacheFormat kVisualCache{"visuals", ".model", "model files of [[visual]]s"};
 inline constexpr CacheFormat kBvhCache{"bvhs", ".bvh", "trees of large meshes, for cards"};
 inline constexpr CacheFormat kHullCache{"hulls", ".hulls", "convex parts of meshes"};
+inline constexpr CacheFormat kSceneCache{"scenes", ".scene", "folders of logged scenes"};
 
 /// First bytes of every entry: those of its format's number.
 inline constexpr std::string_view kCacheMagic = "GLOM";

@@ -324,7 +324,13 @@ Result<std::vector<Command>> LiveSimulation::decode_input(std::string_view topic
   const auto* decode = std::get_if<InputDecoder>(&found.front()->code);
   if (decode == nullptr)
     return Error{ErrorKind::kUsage, fmt::format("topic '{}' is said, not heard", topic)};
-  return (*decode)(data, simulator_->latest(), simulator_->timestep().value());
+  const Snapshot now = simulator_->latest();
+  auto commands = (*decode)(data, now, simulator_->timestep().value());
+  const std::lock_guard lock(received_mutex_);
+  if (commands.ok() && received_ != nullptr && !found.front()->echo)
+    received_->add(
+        {found.front()->info.name, now.data().run, now.time(), {data.begin(), data.end()}});
+  return commands;
 }
 
 Status LiveSimulation::publish(std::string_view topic, std::span<const uint8_t> data) {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "gloam/simulation.h"
+#include "runtime/log/input_log.h"
 #include "runtime/robot_claims.h"
 #include "runtime/streams/exposure_meter.h"
 #include "runtime/streams/latched_topics.h"
@@ -85,6 +86,15 @@ class LiveSimulation final : public Simulation {
   Result<std::shared_ptr<const TopicTable>> topic_table() const {
     return topics_.of(simulator_->world());
   }
+  Result<std::shared_ptr<const TopicTable>> topic_table_of(
+      const std::shared_ptr<const CompiledWorld>& world) const {
+    return topics_.of(world);
+  }
+  /// From now on messages of inputs are kept there, for a log; null = no longer.
+  void keep_received_inputs(std::shared_ptr<ReceivedInputs> inputs) {
+    const std::lock_guard lock(received_mutex_);
+    received_ = std::move(inputs);
+  }
   Simulator& simulator() { return *simulator_; }
   /// The same as open_topics() for a reader in no hurry: SubscriptionOptions::batch.
   Result<std::unique_ptr<TopicStream>> open_topic_batches(const TopicRequest& request, int batch,
@@ -122,6 +132,8 @@ class LiveSimulation final : public Simulation {
   ExposureMeters meters_;
   RobotClaims claims_;
   mutable TopicTables topics_;
+  mutable std::mutex received_mutex_;
+  std::shared_ptr<ReceivedInputs> received_;
   std::mutex latched_mutex_;
   std::vector<std::weak_ptr<LatchedTopics>> latched_;
   std::mutex solver_mutex_;

@@ -22,6 +22,7 @@
 #include "runtime/label_table.h"
 #include "runtime/live_simulation.h"
 #include "runtime/log/log_recorder.h"
+#include "runtime/log/wanted_topics.h"
 #include "runtime/recorded_run.h"
 #include "runtime/run_metrics.h"
 #include "runtime/run_to_step.h"

@@ -8,6 +8,7 @@
 #include "base/text.h"
 #include "ros/messages/sensor_msgs.h"
 #include "ros/messages/trajectory_msgs.h"
+#include "topics/input_echoes.h"
 #include "topics/model_frames.h"
 #include "topics/ros_values.h"
 #include "topics/topic_table.h"
@@ -199,15 +200,24 @@ Commands reset(InputBytes bytes, const Snapshot&, double) {
   return std::vector{now(ResetSim{})};
 }
 
+// Places of actuators' controls in mjData::ctrl.
+std::vector<int> control_places(const mjModel& m, const std::vector<int>& actuators) {
+  std::vector<int> places;
+  for (const int actuator : actuators)
+    for (int i = 0; i < m.actuator_ctrlnum[actuator]; ++i)
+      places.push_back(m.actuator_ctrladr[actuator] + i);
+  return places;
+}
+
 void add_input(std::string name, std::string type, std::string source, InputDecoder decoder,
-               TopicTable* table) {
+               InputEcho echo, TopicTable* table) {
   Topic& topic = table->emplace_back();
   topic.info = {.name = std::move(name),
                 .type = std::move(type),
                 .is_input = true,
-                .is_logged = false,
                 .source = std::move(source)};
   topic.code = std::move(decoder);
+  topic.echo = std::move(echo);
 }
 
 }  // namespace
@@ -221,35 +231,36 @@ void add_input_topics(const TopicSource& world, TopicTable* table) {
     const std::string& controller = robot.options.controller.type;
     if (controller != "none") {
       add_input(space + "/cmd_vel", type_name<geometry_msgs::Twist>(), source, velocity(handle),
-                table);
+                velocity_echo(handle.id), table);
       add_input(space + "/cmd_vel_stamped", type_name<geometry_msgs::TwistStamped>(), source,
-                stamped_velocity(handle), table);
+                stamped_velocity(handle), {}, table);
       const RobotJoints joints = joints_by_name(*world, robot);
       add_input(space + "/joint_command", type_name<sensor_msgs::JointState>(), source,
-                joint_command(joints), table);
+                joint_command(joints), joint_command_echo(joints.ids, joints.names), table);
       add_input(space + "/joint_trajectory", type_name<trajectory_msgs::JointTrajectory>(), source,
-                joint_trajectory(joints), table);
+                joint_trajectory(joints), {}, table);
       add_input(space + "/position_commands", type_name<std_msgs::Float64MultiArray>(), source,
-                position_commands(joints), table);
+                position_commands(joints), {}, table);
     }
-    if (!robot_actuators(m, robot).empty())
+    if (const std::vector<int> actuators = robot_actuators(m, robot); !actuators.empty())
       add_input(space + "/controls", type_name<std_msgs::Float64MultiArray>(), source,
-                controls(handle), table);
+                controls(handle), controls_echo(control_places(m, actuators)), table);
     const int root = robot.root_body > 0 ? m.body_jntadr[robot.root_body] : -1;
     if (root >= 0 && m.jnt_type[root] == mjJNT_FREE)
       add_input(space + "/initialpose", type_name<geometry_msgs::PoseWithCovarianceStamped>(),
-                source, initial_pose({root, world->serial}), table);
+                source, initial_pose({root, world->serial}), initial_pose_echo(root), table);
     if (robot.root_body > 0)
       add_input(space + "/wrench_command", type_name<geometry_msgs::WrenchStamped>(), source,
-                wrench({robot.root_body, world->serial}), table);
+                wrench({robot.root_body, world->serial}), wrench_echo(robot.root_body), table);
   }
   for (int body = 1; body < static_cast<int>(m.nbody); ++body) {
     if (m.body_mocapid[body] < 0 || find_agent(*world, body) != nullptr) continue;
     const std::string name = body_frame(m, body);
     add_input("/" + topic_token(name) + "/pose", type_name<geometry_msgs::PoseStamped>(),
-              "mocap body " + name, mocap_pose({body, world->serial}), table);
+              "mocap body " + name, mocap_pose({body, world->serial}), mocap_pose_echo(body),
+              table);
   }
-  add_input("/reset", type_name<std_msgs::Empty>(), "simulation", reset, table);
+  add_input("/reset", type_name<std_msgs::Empty>(), "simulation", reset, reset_echo(), table);
 }
 
 }  // namespace gloam

@@ -65,6 +65,17 @@ using LatchedEncoder = std::function<Status(const TopicInfo&, const LatchedInput
 using InputDecoder = std::function<Result<std::vector<Command>>(
     std::span<const uint8_t>, const Snapshot& now, double timestep)>;
 
+/// Commands that applied at one step, as a log tells of them by input topics.
+struct AppliedCommands {
+  double time = 0;  ///< [s]
+  std::span<const Command> commands;
+  std::span<const double> controls;  ///< mjData::ctrl from then on, (nu)
+  std::span<const uint8_t> is_set;   ///< 1 = this control was set at this step, (nu)
+};
+/// Makes the message of an input topic that asks for what Commands did; the function returns false
+/// if none of them belongs to the topic.
+using InputEcho = std::function<bool(const AppliedCommands&, MessageBytes*)>;
+
 using TopicCode = std::variant<FrameEncoder, FrameEncoderMaker, ScanEncoder, SampleEncoder,
                                InstantEncoder, InstantEncoderMaker, LatchedEncoder, InputDecoder>;
 
@@ -73,6 +84,7 @@ struct Topic {
   std::vector<std::string> streams = {};  ///< camera, LiDAR or sensors; empty of others
   std::string channel = {};               ///< of CameraRequest::outputs
   TopicCode code;
+  InputEcho echo = {};  ///< of an input; empty = a log has its messages as they came in
 };
 
 /// The message type of a struct, as TopicInfo::type.

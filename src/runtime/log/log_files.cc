@@ -4,6 +4,7 @@
 #include "mcap/mcap_describe.h"
 #include "mcap/mcap_reader.h"
 #include "mcap/mcap_recover.h"
+#include "runtime/log/logged_text.h"
 #include "runtime/log/run_text.h"
 
 namespace gloam {
@@ -26,8 +27,8 @@ Result<LogInfo> describe_log(const std::filesystem::path& file) {
         {topic.topic, topic.type, static_cast<int64_t>(topic.messages), topic.rate});
   McapMessages worlds = reader.messages({.topics = {kWorldTopic}});
   if (const auto first = worlds.next(); first.ok() && *first != nullptr) {
-    const std::span<const uint8_t> data = (*first)->data;
-    const auto text = parse_run_text({reinterpret_cast<const char*>(data.data()), data.size()});
+    const auto json = logged_text(reader, **first);
+    const auto text = json.ok() ? parse_run_text(*json) : Result<RunText>(json.error());
     info.has_run = text.ok();
     if (text.ok()) info.scene = text->name;
   }

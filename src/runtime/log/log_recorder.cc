@@ -5,47 +5,18 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/files.h"
 #include "base/log.h"
 #include "ros/codec.h"
-#include "ros/message_types.h"
 #include "ros/messages/gloam_msgs.h"
 #include "runtime/log/command_text.h"
 #include "runtime/log/run_text.h"
+#include "runtime/log/wanted_topics.h"
 #include "topics/ros_values.h"
 
 namespace gloam {
 namespace {
 
 constexpr int kBatch = 32;  // instants that are written at once: a log is in no hurry
-
-// As rosbag2 writes it: YAML, with the numbers of rmw's enums.
-std::string qos_text(const TopicQos& qos) {
-  return fmt::format(
-      "- history: 1\n  depth: {}\n  reliability: {}\n  durability: {}\n  deadline:\n    sec: "
-      "9223372036\n    nsec: 854775807\n  lifespan:\n    sec: 9223372036\n    nsec: 854775807\n  "
-      "liveliness: 1\n  liveliness_lease_duration:\n    sec: 9223372036\n    nsec: 854775807\n  "
-      "avoid_ros_namespace_conventions: false",
-      qos.depth, qos.is_reliable ? 1 : 2, qos.is_latched ? 1 : 2);
-}
-
-std::span<const uint8_t> bytes_of(const std::string& text) {
-  return {reinterpret_cast<const uint8_t*>(text.data()), text.size()};
-}
-
-// Topics of the log: those that are asked for, else the usual ones. Error: there is no such topic.
-Result<std::vector<const Topic*>> wanted_topics(const TopicTable& table,
-                                                const std::vector<std::string>& patterns) {
-  std::vector<const Topic*> wanted;
-  for (const Topic& topic : table)
-    if (patterns.empty() && topic.info.is_logged && !topic.info.is_input) wanted.push_back(&topic);
-  for (const std::string& pattern : patterns) {
-    GLOAM_TRY(const auto found, find_topics(table, pattern));
-    for (const Topic* topic : found)
-      if (!topic->info.is_input && std::ranges::count(wanted, topic) == 0) wanted.push_back(topic);
-  }
-  return wanted;
-}
 
 // Error of a log that ends early, of which the part that was written stays readable.
 Status partial(const Status& status) {
@@ -56,12 +27,6 @@ Status partial(const Status& status) {
 }
 
 }  // namespace
-
-Result<bool> logs_pictures(const World& world, const LogRequest& request) {
-  GLOAM_TRY(const TopicTable table, make_topic_table(world.compiled()));
-  GLOAM_TRY(const auto topics, wanted_topics(table, request.topics));
-  return std::ranges::any_of(topics, [](const Topic* topic) { return !topic->channel.empty(); });
-}
 
 Result<std::unique_ptr<LogRecorder>> LogRecorder::start(LiveSimulation& simulation,
                                                         const LogRequest& request) {
@@ -76,78 +41,67 @@ Result<std::unique_ptr<LogRecorder>> LogRecorder::start(LiveSimulation& simulati
   GLOAM_TRY(auto sink, FileSink::create(request.file));
   McapWriterOptions options;
   options.durable = request.durable;
-  std::unique_ptr<LogRecorder> log(new LogRecorder(simulation, request));
   LogQueueOptions queue;
   queue.policy = request.required ? LogQueuePolicy::kWait : LogQueuePolicy::kDropOldest;
-  log->queue_ = std::make_unique<LogQueue>(
-      std::make_unique<McapWriter>(std::move(sink), std::move(options)), queue);
-  GLOAM_TRY_STATUS(log->add_channels(topics));
-  log->write_new_world(simulation.latest());
-  // In a chunk of its own: a log that is cut anywhere behind it can be stepped again.
-  GLOAM_TRY_STATUS(log->queue_->push(LogQueueFlush{}));
-  if (request.embed) GLOAM_TRY_STATUS(log->embed_files(*log->world_));
-  simulation.take_command_log();  // of before
-  simulation.simulator().keep_hook_inputs(log->inputs_);
-  GLOAM_TRY_STATUS(log->open_streams(topics));
+  auto writer = std::make_unique<McapWriter>(std::move(sink), std::move(options));
+  std::unique_ptr<LogRecorder> log(new LogRecorder(simulation, request));
+  GLOAM_TRY_STATUS(log->begin(std::make_unique<LogQueue>(std::move(writer), queue), topics));
   return log;
+}
+
+LogRecorder::LogRecorder(LiveSimulation& simulation, const LogRequest& request)
+    : simulation_(simulation), request_(request), first_run_(simulation.latest().data().run) {}
+
+Status LogRecorder::begin(std::unique_ptr<LogQueue> queue, const std::vector<TopicInfo>& topics) {
+  channels_ = std::make_unique<LogChannels>(std::move(queue));
+  std::vector<TopicInfo> outputs;
+  std::vector<std::string> inputs;
+  for (const TopicInfo& topic : topics)
+    if (topic.is_input)
+      inputs.push_back(topic.name);
+    else
+      outputs.push_back(topic);
+  inputs_ = std::make_unique<InputLog>(
+      std::move(inputs),
+      [this](const TopicInfo& topic, double time, int64_t run, const MessageBytes& data) {
+        // Of the many inputs a log has those that were used.
+        static_cast<void>(channels_->add(topic));
+        write(topic.name, time, run, data);
+      });
+  GLOAM_TRY_STATUS(declare(outputs));
+  worlds_ = std::make_unique<WorldLog>(request_, *channels_, simulation_);
+  write_new_world(simulation_.latest());
+  GLOAM_TRY_STATUS(fault_);
+  // In a chunk of its own: a log that is cut anywhere behind it can be stepped again.
+  GLOAM_TRY_STATUS(channels_->queue().push(LogQueueFlush{}));
+  simulation_.take_command_log();  // of before
+  simulation_.simulator().keep_hook_inputs(hook_inputs_);
+  simulation_.keep_received_inputs(received_);
+  return open_streams(outputs);
 }
 
 LogRecorder::~LogRecorder() {
   simulation_.simulator().keep_hook_inputs(nullptr);
+  simulation_.keep_received_inputs(nullptr);
   topics_.reset();
   states_.reset();
 }
 
-Status LogRecorder::add_channel(const TopicInfo& topic, const std::string& encoding,
-                                const std::string& schema, const std::string& hash) {
-  uint16_t& schema_id = schemas_[topic.type];
-  if (schema_id == 0 && !schema.empty()) {
-    schema_id = static_cast<uint16_t>(schemas_.size());
-    GLOAM_TRY_STATUS(
-        queue_->push(McapSchema{schema_id, topic.type, "ros2msg", {schema.begin(), schema.end()}}));
-  }
-  const auto id = static_cast<uint16_t>(channels_.size() + 1);
-  McapChannel channel{id, schema_id, topic.name, encoding, {}};
-  if (encoding == "cdr")
-    channel.metadata = {{"offered_qos_profiles", qos_text(topic.qos)}, {"topic_type_hash", hash}};
-  GLOAM_TRY_STATUS(queue_->push(std::move(channel)));
-  channels_[topic.name] = {id};
-  return {};
-}
-
-Status LogRecorder::add_channels(const std::vector<TopicInfo>& topics) {
-  GLOAM_TRY_STATUS(add_channel({.name = kWorldTopic, .type = "gloam/World"}, "json", "", ""));
-  GLOAM_TRY_STATUS(add_channel({.name = kCommandTopic, .type = "gloam/Command"}, "json", "", ""));
-  const MessageType &state = message_type<gloam_msgs::State>(),
-                    &input = message_type<gloam_msgs::StepInput>();
+Status LogRecorder::declare(const std::vector<TopicInfo>& outputs) {
+  const std::string text = type_name<std_msgs::String>();
+  GLOAM_TRY_STATUS(channels_->add({.name = kWorldTopic, .type = text}));
+  GLOAM_TRY_STATUS(channels_->add({.name = kCommandTopic, .type = text}));
+  GLOAM_TRY_STATUS(channels_->add({.name = kStateTopic, .type = type_name<gloam_msgs::State>()}));
   GLOAM_TRY_STATUS(
-      add_channel({.name = kStateTopic, .type = state.name}, "cdr", state.text, state.hash));
-  GLOAM_TRY_STATUS(
-      add_channel({.name = kInputTopic, .type = input.name}, "cdr", input.text, input.hash));
-  for (const TopicInfo& topic : topics) {
-    GLOAM_TRY(const MessageInfo type, message_info(topic.type));
-    GLOAM_TRY_STATUS(add_channel(topic, "cdr", type.definition, type.hash));
-  }
+      channels_->add({.name = kInputTopic, .type = type_name<gloam_msgs::StepInput>()}));
+  for (const TopicInfo& topic : outputs) GLOAM_TRY_STATUS(channels_->add(topic));
   return {};
 }
 
-Status LogRecorder::embed_files(const CompiledWorld& world) {
-  for (const Dependency& file : world.files) {
-    if (!file.exists) continue;
-    GLOAM_TRY(auto bytes, read_file(file.path));
-    McapAttachment attachment;
-    attachment.name = file.path.string();
-    attachment.media_type = "application/octet-stream";
-    attachment.data.assign(bytes.begin(), bytes.end());
-    GLOAM_TRY_STATUS(queue_->push(std::move(attachment)));
-  }
-  return {};
-}
-
-Status LogRecorder::open_streams(const std::vector<TopicInfo>& topics) {
+Status LogRecorder::open_streams(const std::vector<TopicInfo>& outputs) {
   TopicRequest request{
       .width = request_.width, .height = request_.height, .required = request_.required};
-  for (const TopicInfo& topic : topics) request.topics.push_back(topic.name);
+  for (const TopicInfo& topic : outputs) request.topics.push_back(topic.name);
   GLOAM_TRY(topics_,
             simulation_.open_topic_batches(request, kBatch, [this](const TopicMessage& message) {
               write(message.topic.name, message.time, message.run, message.data);
@@ -171,25 +125,12 @@ uint64_t LogRecorder::log_time(double time, int64_t run) const {
 
 void LogRecorder::write(const std::string& topic, double time, int64_t run,
                         std::span<const uint8_t> data) {
-  const auto found = channels_.find(topic);
-  if (found == channels_.end()) return;  // came with a recompile
-  LogQueueMessage message;
-  message.channel = found->second.id;
-  message.sequence = found->second.sequence++;
-  message.log_time = message.publish_time = log_time(time, run);
-  message.data = queue_->take_buffer();
-  message.data.assign(data.begin(), data.end());
-  static_cast<void>(queue_->push(std::move(message)));  // status() tells of a failure
+  channels_->write(topic, log_time(time, run), data);  // status() tells of a failure
 }
 
-void LogRecorder::write_world(const Snapshot& now) {
-  world_ = now.data().world;
-  const auto timestep = simulation_.simulator().own_timestep();
-  RunText text = describe_run(*world_, simulation_.seed(), timestep);
-  text.run = now.data().run;
-  text.step = now.data().world_since;
-  const std::string json = to_json(text);
-  write(kWorldTopic, now.time(), now.data().run, bytes_of(json));
+void LogRecorder::write_text(const char* topic, double time, int64_t run, std::string text) {
+  encode(std_msgs::String{std::move(text)}, &bytes_);
+  write(topic, time, run, bytes_);
 }
 
 // Everything that had led to a run's first step, if that is a checkpoint's: so it can be stepped
@@ -200,33 +141,18 @@ bool LogRecorder::write_history(const Snapshot& now) {
   if (!checkpoint.ok() || simulation_.latest().data().run != run) return false;
   const RunRecord& record = checkpoint->data().record;
   if (record.first_step == 0) return false;
-  RunText text;
   for (const RunRecord::Chapter& chapter : record.chapters) {
     if (chapter.from > now.step()) break;
-    text = describe_run(*chapter.world, record.seed, record.timestep);
-    text.run = run;
-    text.step = chapter.from;
-    text.has_history = true;
-    const std::string json = to_json(text);
-    write(kWorldTopic, now.time(), run, bytes_of(json));
+    keep(worlds_->write(*chapter.world, {run, chapter.from, true}, log_time(now.time(), run)));
   }
   for (const Command& command : record.commands) {
     if (command.step >= record.first_step) break;  // this run's own
-    const std::string json = command_text({run, command}, record.world_at(command.step));
-    write(kCommandTopic, now.time(), run, bytes_of(json));
+    write_text(kCommandTopic, now.time(), run,
+               command_text({run, command}, record.world_at(command.step)));
   }
   for (const StepInput& input : record.inputs) write_input(input, now.time(), run);
   world_ = now.data().world;
   return true;
-}
-
-void LogRecorder::write_commands() {
-  for (const LoggedCommand& logged : simulation_.take_command_log()) {
-    const std::string json = command_text(logged, *world_);
-    const double time =
-        static_cast<double>(logged.command.step) * simulation_.simulator().timestep().value();
-    write(kCommandTopic, time, logged.run, bytes_of(json));
-  }
 }
 
 void LogRecorder::write_input(const StepInput& input, double time, int64_t run) {
@@ -240,12 +166,17 @@ void LogRecorder::write_input(const StepInput& input, double time, int64_t run) 
   write(kInputTopic, time, run, bytes_);
 }
 
-void LogRecorder::write_hook_inputs() {
-  for (const StepInput& input : inputs_->take()) {
-    const double time =
-        static_cast<double>(input.step) * simulation_.simulator().timestep().value();
-    write_input(input, time, input.run);
-  }
+void LogRecorder::write_inputs(const Snapshot& now) {
+  const double timestep = simulation_.simulator().timestep().value();
+  const std::vector<LoggedCommand> commands = simulation_.take_command_log();
+  const std::vector<StepInput> hook_inputs = hook_inputs_->take();
+  for (const LoggedCommand& logged : commands)
+    write_text(kCommandTopic, static_cast<double>(logged.command.step) * timestep, logged.run,
+               command_text(logged, *world_));
+  for (const StepInput& input : hook_inputs)
+    write_input(input, static_cast<double>(input.step) * timestep, input.run);
+  inputs_->take(now, timestep, commands, hook_inputs);
+  inputs_->take(received_->take());
 }
 
 void LogRecorder::write_state(const Snapshot& now) {
@@ -265,32 +196,45 @@ void LogRecorder::write_state(const Snapshot& now) {
 // Writes the World of a run that begins with a checkpoint, or that goes on in another World.
 void LogRecorder::write_new_world(const Snapshot& now) {
   const bool may_have_history = now.data().run != world_run_ && now.step() > 0;
-  if (!(may_have_history && write_history(now)) && now.data().world != world_) write_world(now);
+  const bool is_new = now.data().world != world_;
+  if (is_new)
+    if (auto table = simulation_.topic_table_of(now.data().world); table.ok())
+      inputs_->follow(*std::move(table));
+  if (!(may_have_history && write_history(now)) && is_new) {
+    world_ = now.data().world;
+    keep(worlds_->write(*world_, {now.data().run, now.data().world_since, false},
+                        log_time(now.time(), now.data().run)));
+  }
   world_run_ = now.data().run;
 }
 
 void LogRecorder::take(const Snapshot& now) {
   write_new_world(now);
-  write_commands();
-  write_hook_inputs();
+  write_inputs(now);
   write_state(now);
+}
+
+// Keeps the first failure.
+void LogRecorder::keep(const Status& status) {
+  if (fault_.ok()) fault_ = status;
 }
 
 Status LogRecorder::status() const {
   GLOAM_TRY_STATUS(topics_->status());
-  return partial(queue_->status());
+  return partial(channels_->queue().status());
 }
 
 Status LogRecorder::finish(const Snapshot& last) {
   topics_.reset();
   states_.reset();
   take(last);
-  if (inputs_->lost() > 0)
+  if (hook_inputs_->lost() > 0)
     log_warning(
         "{}: what a step hook wrote in {} steps found no room: the run cannot be stepped "
         "again",
-        request_.file.string(), inputs_->lost());
-  return partial(queue_->close());
+        request_.file.string(), hook_inputs_->lost());
+  GLOAM_TRY_STATUS(partial(channels_->queue().close()));
+  return partial(fault_);
 }
 
 }  // namespace gloam

@@ -8,15 +8,13 @@
 #include "ros/codec.h"
 #include "ros/messages/gloam_msgs.h"
 #include "runtime/log/command_text.h"
+#include "runtime/log/files/scene_folder.h"
+#include "runtime/log/logged_text.h"
 #include "runtime/log/run_text.h"
 #include "sim/commands/command_check.h"
 
 namespace gloam {
 namespace {
-
-std::string_view text_of(const McapMessage& message) {
-  return {reinterpret_cast<const char*>(message.data.data()), message.data.size()};
-}
 
 /// A World of the log and from where it runs.
 struct LoggedWorld {
@@ -55,9 +53,11 @@ class RunReader {
   }
 
   Status add_world(const McapMessage& message) {
-    GLOAM_TRY(RunText text, parse_run_text(text_of(message)));
-    GLOAM_TRY(auto world, compile_run(text, folder_));
-    Status same = check_same_bits(text, *world, folder_);
+    GLOAM_TRY(const std::string json, logged_text(log_, message));
+    GLOAM_TRY(RunText text, parse_run_text(json));
+    GLOAM_TRY(const SceneFolder folder, find_scene_folder(text, log_, folder_));
+    GLOAM_TRY(auto world, compile_run(text, folder));
+    Status same = check_same_bits(text, *world, folder);
     worlds_.push_back({std::move(text), std::move(world), std::move(same)});
     return {};
   }
@@ -83,7 +83,8 @@ class RunReader {
   }
 
   Status add_command(const McapMessage& message) {
-    GLOAM_TRY(LoggedCommand logged, parse_command(text_of(message)));
+    GLOAM_TRY(const std::string json, logged_text(log_, message));
+    GLOAM_TRY(LoggedCommand logged, parse_command(json));
     if (std::holds_alternative<ResetSim>(logged.command.what)) return {};
     const LoggedWorld& at = world_at(logged.run, logged.command.step);
     if (!at.same_bits.ok()) return {};  // what its handles name may be another thing

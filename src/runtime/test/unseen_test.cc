@@ -1,6 +1,7 @@
 // Nobody looks, nothing is drawn: counts of what is made for readers of numbers alone.
 
 #include "runtime/log/log_recorder.h"
+#include "runtime/log/wanted_topics.h"
 #include "scenes.h"
 #include "topics/topic_table.h"
 

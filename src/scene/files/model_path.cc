@@ -55,21 +55,6 @@ bool may_read_below_wide(const fs::path& path, const fs::path& folder) {
                       [](const fs::path& part) { return part.string().starts_with('.'); });
 }
 
-// The file's folder and those above it that a root may be, nearest first.
-std::vector<fs::path> candidate_roots(const fs::path& file) {
-  std::vector<fs::path> folders{file.parent_path()};
-  std::error_code code;
-  while (static_cast<int>(folders.size()) <= kMostLevelsUp) {
-    const fs::path& below = folders.back();
-    const fs::path folder = below.parent_path();
-    if (fs::is_symlink(below, code) || folder == below || folder == folder.root_path() ||
-        is_home_folder(below) || is_home_folder(folder))
-      break;
-    folders.push_back(folder);
-  }
-  return folders;
-}
-
 }  // namespace
 
 bool is_container(const fs::path& path) {
@@ -86,6 +71,26 @@ Status refuse_mesh(const fs::path& path, const std::string& as_written, const So
                fmt::format("'{:.200}' is a mesh; a model is wanted here", as_written), loc,
                "draw it by a [[visual]], make a body of it by an [[object]], stand in it as "
                "[environment] file, or look at it by gloam convert (docs/import.md)"};
+}
+
+bool holds_homes(const fs::path& folder) {
+  if (folder == folder.root_path() || is_home_folder(folder)) return true;
+  const char* home = std::getenv("HOME");
+  return home != nullptr && *home != 0 && is_below(fs::path(home).lexically_normal(), folder);
+}
+
+std::vector<fs::path> candidate_roots(const fs::path& file) {
+  std::vector<fs::path> folders{file.parent_path()};
+  std::error_code code;
+  while (static_cast<int>(folders.size()) <= kMostLevelsUp) {
+    const fs::path& below = folders.back();
+    const fs::path folder = below.parent_path();
+    if (fs::is_symlink(below, code) || folder == below || folder == folder.root_path() ||
+        is_home_folder(below) || is_home_folder(folder))
+      break;
+    folders.push_back(folder);
+  }
+  return folders;
 }
 
 fs::path absolute_path(const fs::path& path, const fs::path& base) {

@@ -47,6 +47,14 @@ std::string why_not_readable(const std::filesystem::path& path,
 std::filesystem::path find_package(const std::string& name, const std::filesystem::path& file,
                                    const FileAccess& access);
 
+/// True for "/", for home folders and for folders above one: the names below such a folder tell
+/// whose machine it is.
+bool holds_homes(const std::filesystem::path& folder);
+
+/// The file's folder and those above it that may be its model's root, nearest first: at most four
+/// levels up, never "/" or a home folder unless the file lies there, nor past a symbolic link.
+std::vector<std::filesystem::path> candidate_roots(const std::filesystem::path& file);
+
 /// `path` made absolute against `base`, without "." and "..", links untouched. An absolute `path`
 /// stays.
 std::filesystem::path absolute_path(const std::filesystem::path& path,
