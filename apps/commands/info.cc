@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
+#include "gloam/topics.h"
 #include "json_text.h"
 #include "log_report.h"
 #include "print.h"
@@ -191,6 +192,8 @@ int info(InfoCommand& command, const Globals& globals) {
     return 0;
   }
   WorldInfo info = world->info();
+  const std::vector<Error> renamed = topic_notes(*world);
+  info.notes.insert(info.notes.end(), renamed.begin(), renamed.end());
   const NotDrawn not_drawn = world->not_drawn();
   info.unsupported.insert(info.unsupported.end(), not_drawn.lacking.begin(),
                           not_drawn.lacking.end());

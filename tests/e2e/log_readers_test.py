@@ -62,8 +62,9 @@ velocity = [0.2, 0, 0]
 [weather]
 visibility = 200
 [[metric]]
-name = "height"
-formula = "body('cart one/base').z"
+name = "tilt"
+value = 'deg(acos(clamp(robot.up.z, -1, 1)))'
+robots = "*"
 [render]
 tier = "direct"
 spp = 1

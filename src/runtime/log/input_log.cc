@@ -18,14 +18,32 @@ std::vector<ReceivedInputs::Message> ReceivedInputs::take() {
   return std::exchange(messages_, {});
 }
 
-void InputLog::follow(std::shared_ptr<const TopicTable> table) { table_ = std::move(table); }
+double time_of_step(const Snapshot& now, double timestep, int64_t run, int64_t step) {
+  if (run != now.data().run) return static_cast<double>(step) * timestep;
+  return now.time() - static_cast<double>(now.step() - step) * timestep;
+}
 
-// Controls of a run begin as its first Snapshot has them.
+void InputLog::follow(std::shared_ptr<const TopicTable> table, std::vector<Command> schedule) {
+  table_ = std::move(table);
+  schedule_ = std::move(schedule);
+}
+
+// Controls of a run begin as its first Snapshot has them; what the scene did before that is not the
+// log's.
 void InputLog::begin_run(const Snapshot& now) {
+  if (run_ != now.data().run) scheduled_ = now.step();
   run_ = now.data().run;
   const mjModel& model = *now.data().world->model;
   const std::span<const double> controls = state_part(model, now.state(), mjSTATE_CTRL);
   controls_.assign(controls.begin(), controls.end());
+}
+
+// Commands of the scene that have applied by step `end` of the run.
+void InputLog::add_scheduled(int64_t end, ByStep* by_step) {
+  for (const Command& command : schedule_)
+    if (command.step >= scheduled_ && command.step < end)
+      (*by_step)[{run_, command.step}].commands.push_back(command);
+  scheduled_ = std::max(scheduled_, end);
 }
 
 void InputLog::set_control(int place, double value) {
@@ -59,9 +77,14 @@ void InputLog::set_controls(const Snapshot& now, const StepInputs& inputs) {
 void InputLog::take(const Snapshot& now, double timestep,
                     const std::vector<LoggedCommand>& commands,
                     const std::vector<StepInput>& hook_inputs) {
+  if (table_ == nullptr) return;
   if (run_ < 0 || controls_.size() != static_cast<size_t>(now.data().world->model->nu))
     begin_run(now);
-  std::map<std::pair<int64_t, int64_t>, StepInputs> by_step;  // by run and step
+  ByStep by_step;
+  for (const LoggedCommand& logged : commands)
+    if (logged.run == run_ && std::holds_alternative<ResetSim>(logged.command.what))
+      add_scheduled(logged.command.step, &by_step);  // the run ends there
+  if (run_ == now.data().run) add_scheduled(now.step(), &by_step);
   for (const LoggedCommand& logged : commands)
     by_step[{logged.run, logged.command.step}].commands.push_back(logged.command);
   for (const StepInput& input : hook_inputs)
@@ -69,7 +92,7 @@ void InputLog::take(const Snapshot& now, double timestep,
   for (const auto& [at, inputs] : by_step) {
     if (at.first == now.data().run && run_ != at.first) begin_run(now);
     set_controls(now, inputs);
-    const double time = static_cast<double>(at.second) * timestep;
+    const double time = time_of_step(now, timestep, at.first, at.second);
     const AppliedCommands applied{time, inputs.commands, controls_, is_set_};
     for (const Topic& topic : *table_) {
       if (!topic.echo || std::ranges::count(topics_, topic.info.name) == 0) continue;
@@ -80,6 +103,7 @@ void InputLog::take(const Snapshot& now, double timestep,
 }
 
 void InputLog::take(const std::vector<ReceivedInputs::Message>& received) {
+  if (table_ == nullptr) return;
   for (const ReceivedInputs::Message& message : received)
     for (const Topic& topic : *table_)
       if (topic.info.name == message.topic && !topic.echo &&

@@ -11,6 +11,7 @@
 #include "runtime/log/command_text.h"
 #include "runtime/log/run_text.h"
 #include "runtime/log/wanted_topics.h"
+#include "sim/loop/scene_schedule.h"
 #include "topics/ros_values.h"
 
 namespace gloam {
@@ -171,10 +172,10 @@ void LogRecorder::write_inputs(const Snapshot& now) {
   const std::vector<LoggedCommand> commands = simulation_.take_command_log();
   const std::vector<StepInput> hook_inputs = hook_inputs_->take();
   for (const LoggedCommand& logged : commands)
-    write_text(kCommandTopic, static_cast<double>(logged.command.step) * timestep, logged.run,
-               command_text(logged, *world_));
+    write_text(kCommandTopic, time_of_step(now, timestep, logged.run, logged.command.step),
+               logged.run, command_text(logged, *world_));
   for (const StepInput& input : hook_inputs)
-    write_input(input, static_cast<double>(input.step) * timestep, input.run);
+    write_input(input, time_of_step(now, timestep, input.run, input.step), input.run);
   inputs_->take(now, timestep, commands, hook_inputs);
   inputs_->take(received_->take());
 }
@@ -193,13 +194,19 @@ void LogRecorder::write_state(const Snapshot& now) {
   write(kStateTopic, now.time(), now.data().run, bytes_);
 }
 
+// Commands of the scene; a scene whose schedule is wrong does not run.
+std::vector<Command> LogRecorder::schedule_of(const CompiledWorld& world) const {
+  auto schedule = scene_schedule(world, simulation_.simulator().timestep());
+  return schedule.ok() ? *std::move(schedule) : std::vector<Command>();
+}
+
 // Writes the World of a run that begins with a checkpoint, or that goes on in another World.
 void LogRecorder::write_new_world(const Snapshot& now) {
   const bool may_have_history = now.data().run != world_run_ && now.step() > 0;
   const bool is_new = now.data().world != world_;
   if (is_new)
     if (auto table = simulation_.topic_table_of(now.data().world); table.ok())
-      inputs_->follow(*std::move(table));
+      inputs_->follow(*std::move(table), schedule_of(*now.data().world));
   if (!(may_have_history && write_history(now)) && is_new) {
     world_ = now.data().world;
     keep(worlds_->write(*world_, {now.data().run, now.data().world_since, false},

@@ -39,6 +39,7 @@ class LogRecorder {
   void write_input(const StepInput& input, double time, int64_t run);
   void write_text(const char* topic, double time, int64_t run, std::string text);
   bool write_history(const Snapshot& now);
+  std::vector<Command> schedule_of(const CompiledWorld& world) const;
   void write_new_world(const Snapshot& now);
   void write_state(const Snapshot& now);
   void write(const std::string& topic, double time, int64_t run, std::span<const uint8_t> data);

@@ -42,7 +42,7 @@ fs::path remembered_folder(const RunText& text) {
 class SceneFinder {
  public:
   SceneFinder(const RunText& text, const McapReader& log, const fs::path& folder)
-      : text_(text), log_(log) {
+      : text_(text), log_(log), is_given_(!folder.empty()) {
     const fs::path beside = absolute_path(log.name(), "").parent_path();
     if (!folder.empty()) {
       places_ = {absolute_path(folder, "")};
@@ -152,7 +152,7 @@ class SceneFinder {
     is_listed_ = true;
     int entries = 0;
     for (const fs::path& place : places_) {
-      if (holds_homes(place)) continue;  // a whole disk or home is no folder of a scene
+      if (!is_given_ && holds_homes(place)) continue;  // unasked, no whole disk or home is searched
       std::error_code code;
       fs::recursive_directory_iterator it(place, fs::directory_options::skip_permission_denied,
                                           code);
@@ -171,6 +171,7 @@ class SceneFinder {
   std::vector<fs::path> places_;
   std::map<std::string, const McapAttachmentIndex*> embedded_;
   std::multimap<std::string, fs::path> by_name_;
+  const bool is_given_;  // the user names the folder
   bool is_listed_ = false;
 };
 
