@@ -77,5 +77,8 @@ class Foreign(ProgramTest):
         path = self.folder / "empty.mcap"
         path.write_bytes(ENTIRE + b"\x02" + (20).to_bytes(8, "little") + bytes(20) + MCAP)
         self.assertIn("is empty", self.gloam("info", path).stdout)
+        for command in (["replay", path, "--verify"], ["export", path, "--to", "tum", "--topic", "/odom", "--out", "x.tum"],
+                        ["evaluate", path, "--reference", path], ["evaluate", f"{path}:/odom", "--reference", path]):
+            self.assertIn("is empty", self.gloam(*command, expect=1).stderr)
         unnamed = path.rename(self.folder / "empty.log")  # known by its content
         self.assertIn("is empty", self.gloam("info", unnamed).stdout)

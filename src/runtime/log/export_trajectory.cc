@@ -82,6 +82,7 @@ std::string line_of(const StampedPose& at, TrajectoryFormat format) {
 
 Result<std::vector<std::string>> trajectory_topics(const std::filesystem::path& log) {
   GLOAM_TRY(const McapReader reader, McapReader::open(log));
+  GLOAM_TRY_STATUS(refuse_empty_log(reader));
   std::vector<std::string> topics;
   for (const auto& [id, channel] : reader.channels()) {
     const auto schema = reader.schemas().find(channel.schema);

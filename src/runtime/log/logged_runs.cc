@@ -11,6 +11,7 @@
 #include "runtime/log/files/scene_folder.h"
 #include "runtime/log/logged_text.h"
 #include "runtime/log/run_text.h"
+#include "runtime/log/topic_reader.h"
 #include "sim/commands/command_check.h"
 
 namespace gloam {
@@ -29,6 +30,7 @@ class RunReader {
       : log_(log), folder_(folder) {}
 
   Result<LoggedRuns> read() {
+    GLOAM_TRY_STATUS(refuse_empty_log(log_));
     GLOAM_TRY_STATUS(for_each(kWorldTopic, [this](const auto& m) { return add_world(m); }));
     if (worlds_.empty())
       return Error{ErrorKind::kInput,

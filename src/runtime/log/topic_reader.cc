@@ -6,7 +6,13 @@
 
 namespace gloam {
 
+Status refuse_empty_log(const McapReader& log) {
+  if (log.statistics().messages > 0 || !log.pieces().empty()) return {};
+  return Error{ErrorKind::kInput, "the log is empty: it has no messages", {log.name(), 0, 0}};
+}
+
 Result<TopicReader> TopicReader::find(const McapReader& log, const std::string& name) {
+  GLOAM_TRY_STATUS(refuse_empty_log(log));
   std::vector<std::string> names;
   for (const auto& [id, channel] : log.channels()) {
     names.push_back(channel.topic);

@@ -9,6 +9,9 @@
 
 namespace gloam {
 
+/// Error: the log has no messages.
+Status refuse_empty_log(const McapReader& log);
+
 struct TopicReader {
   std::string name;
   MessageSchema schema;

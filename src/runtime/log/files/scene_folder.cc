@@ -119,11 +119,21 @@ class SceneFinder {
       if (auto bytes = content(path_in(place, file), file.hash)) return bytes;
     GLOAM_TRY(auto embedded, read_embedded(file));
     if (embedded) return std::optional(std::move(embedded));
+    if (is_changed(file)) return std::optional<Bytes8>();
     if (!is_listed_) list_files();
     const auto [first, last] = by_name_.equal_range(fs::path(file.path).filename().string());
     for (auto it = first; it != last; ++it)
       if (auto bytes = content(it->second, file.hash)) return bytes;
     return std::optional<Bytes8>();
+  }
+
+  // A file that is where it should be, with other content, is told of; no copy of what it was is
+  // taken in its place.
+  bool is_changed(const RunText::File& file) const {
+    return std::ranges::any_of(places_, [&file](const fs::path& place) {
+      std::error_code code;
+      return fs::exists(path_in(place, file), code);
+    });
   }
 
   static std::optional<Bytes8> content(const fs::path& path, uint64_t hash) {
