@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import InputError, IoError, UnsupportedError
+from .onnx_sizes import check_declared, check_operations
 
 _ACTIONS = ("actions", "action", "mean")  # outputs of these names are preferred to the first
 
@@ -26,14 +27,15 @@ def _openvino() -> Any:
 class Network:
     """One input of (1, inputs) and one output of (1, outputs) that are used, both f32.
 
-    Raises ImportError: no openvino; IoError: no such file; InputError: it is no ONNX file, or its output has no fixed
-    size; UnsupportedError: it takes several inputs.
+    Raises ImportError: no openvino; IoError: no such file; InputError: it is no ONNX file, its tensors are too large, or
+    have no fixed size; UnsupportedError: it takes several inputs, or has loops.
     """
 
     def __init__(self, path: Path) -> None:
         openvino = _openvino()
         if not path.is_file():
             raise IoError("there is no such file", str(path))
+        check_declared(path)
         core = openvino.Core()
         try:
             model = core.read_model(path)
@@ -53,6 +55,7 @@ class Network:
         names = [port.get_any_name() for port in model.outputs]
         self._output = next((names.index(name) for name in _ACTIONS if name in names), 0)
         self.inputs = self._fix_batch(model, path)
+        check_operations(model, path)
         config = {"INFERENCE_PRECISION_HINT": "f32", "INFERENCE_NUM_THREADS": 1, "NUM_STREAMS": 1}
         self._request = core.compile_model(model, "CPU", config).create_infer_request()
         result = model.outputs[self._output].partial_shape
