@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <set>
 
 #include "ros/codec.h"
 #include "ros/messages/gloam_msgs.h"
@@ -11,7 +12,7 @@
 #include "runtime/log/files/scene_folder.h"
 #include "runtime/log/logged_text.h"
 #include "runtime/log/run_text.h"
-#include "runtime/log/topic_reader.h"
+#include "runtime/log/state_order.h"
 #include "sim/commands/command_check.h"
 
 namespace gloam {
@@ -37,9 +38,9 @@ class RunReader {
                    log_.name() + " holds no run of Gloam's: it cannot be stepped again",
                    {},
                    "`gloam info` tells what it holds"};
+    GLOAM_TRY_STATUS(for_each(kInputTopic, [this](const auto& m) { return add_input(m); }));
     GLOAM_TRY_STATUS(for_each(kStateTopic, [this](const auto& m) { return add_state(m); }));
     GLOAM_TRY_STATUS(for_each(kCommandTopic, [this](const auto& m) { return add_command(m); }));
-    GLOAM_TRY_STATUS(for_each(kInputTopic, [this](const auto& m) { return add_input(m); }));
     for (auto& [number, run] : runs_.runs) add_chapters(number, &run);
     return std::move(runs_);
   }
@@ -74,10 +75,13 @@ class RunReader {
 
   Status add_state(const McapMessage& message) {
     GLOAM_TRY(const auto state, decode<gloam_msgs::State>(message.data));
+    const LoggedWorld& world = world_at(state.run, state.step);
+    const double timestep =
+        world.text.timestep > 0 ? world.text.timestep : world.world->model->opt.timestep;
+    GLOAM_TRY_STATUS(order_.check(state, timestep, sets_time_.contains(state.run)));
     LoggedRuns::Run& run = runs_.runs[state.run];
     if (state.step == 0) run.has_beginning = true;
     if (run.first_step < 0) run.first_step = state.step;
-    if (state.step < run.last_step) return {};
     run.last_step = state.step;
     run.record.step = state.step;
     run.record.hash = state.hash;
@@ -104,6 +108,8 @@ class RunReader {
     if (!fits)
       return Error{ErrorKind::kInput, fmt::format("{}: the inputs at step {} are not of its state",
                                                   log_.name(), input.step)};
+    constexpr int kTime = 0;  // place of the time in mjSTATE_INTEGRATION
+    if (std::ranges::find(input.index, kTime) != input.index.end()) sets_time_.insert(input.run);
     runs_.runs[input.run].record.inputs.push_back(
         {input.run, input.step, std::move(input.index), std::move(input.value)});
     return {};
@@ -129,6 +135,8 @@ class RunReader {
   const McapReader& log_;
   const std::filesystem::path& folder_;
   std::vector<LoggedWorld> worlds_;
+  std::set<int64_t> sets_time_;  // runs in which a step hook has set the time
+  StateOrder order_{log_.name()};
   LoggedRuns runs_;
 };
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <filesystem>
 
 #include "runtime/log/logged_motion.h"
 #include "runtime/log/pose_motion.h"
@@ -44,6 +45,7 @@ class Replay {
   Result<RunReport> record(const ProgressCallback& progress) {
     const bool is_new = replay_.motion == ReplayMotion::kNewRun;
     GLOAM_TRY(const World world, compile_replay(replay_, run_));
+    if (is_new) take_changes(logged_.written.sim, world.compiled()->written.sim);
     const double length = static_cast<double>(run_.last_step) *
                           run_.record.timestep.value_or(double{logged_.model->opt.timestep});
     if (request_.duration <= 0 || (!is_new && request_.duration > length))
@@ -64,6 +66,13 @@ class Replay {
     if (!run_.same_bits.ok()) notes_.back() += "; " + run_.same_bits.error().message;
     GLOAM_TRY(auto poses, PoseMotion::create(log_, run_, world.compiled()));
     return std::unique_ptr<Motion>(std::move(poses));
+  }
+
+  // Options of [sim] that a new run has other than the logged one.
+  void take_changes(const SimOptions& logged, const SimOptions& now) {
+    if (now.seed != logged.seed) request_.simulation.seed = now.seed;
+    if (now.timestep != logged.timestep) request_.simulation.timestep = now.timestep.value_or(0);
+    if (now.duration != logged.duration && request_.duration <= 0) request_.duration = now.duration;
   }
 
   // No motion: physics.
@@ -92,9 +101,25 @@ class Replay {
   std::vector<std::string> notes_;
 };
 
+// The log that is read is not replaced by what is made of it.
+Status check_log_is_kept(const LogReplay& replay) {
+  const RunRequest& request = replay.request;
+  std::error_code code;
+  const auto folder = std::filesystem::absolute(replay.log).parent_path();
+  const bool in_folder =
+      request.overwrite && std::filesystem::equivalent(folder, request.out, code) && !code;
+  if (!in_folder && !(std::filesystem::equivalent(replay.log, request.log.file, code) && !code))
+    return {};
+  return Error{ErrorKind::kUsage,
+               fmt::format("the replay would replace {}, which it reads", replay.log.string()),
+               {},
+               "record it elsewhere"};
+}
+
 }  // namespace
 
 Result<RunReport> replay_log(const LogReplay& replay, const ProgressCallback& progress) {
+  GLOAM_TRY_STATUS(check_log_is_kept(replay));
   GLOAM_TRY(const McapReader log, McapReader::open(replay.log));
   GLOAM_TRY(const LoggedRuns runs, LoggedRuns::read(log, replay.folder));
   GLOAM_TRY(const LoggedRuns::Run* run, runs.find(replay.run));

@@ -114,10 +114,12 @@ Result<RunText> parse_run_text(std::string_view json_text) {
     for (const Json& file : json.at("files"))
       text.files.push_back(
           {file.at("path").get<std::string>(), from_hex(file.at("hash").get<std::string>())});
-    text.has_root = json.value("has_root", false);
-    for (const Json& package : json.value("packages", Json::array()))
-      text.packages.push_back(
-          {package.at("name").get<std::string>(), package.at("folder").get<std::string>()});
+    const bool is_timestep = text.timestep == 0 || (text.timestep >= 1e-9 && text.timestep < 1e3);
+    if (text.run < 0 || text.step < 0 || !is_timestep)
+      return Error{ErrorKind::kInput,
+                   fmt::format("the log's description of its run is damaged: run {}, step {}, "
+                               "timestep {:g} s",
+                               text.run, text.step, text.timestep)};
     return text;
   } catch (const std::exception& error) {
     return Error{ErrorKind::kInput,
