@@ -55,8 +55,10 @@ Result<World> compile(const Scene& scene, const Globals& globals, const std::str
 /// "640x480" -> width, height.
 Status parse_resolution(const std::string& text, int& width, int& height);
 
-/// A progress line on stderr: a bar with ETA on a terminal, a line now and then elsewhere. Stops
-/// the job on Ctrl-C; before the first call, while the job is prepared, the whole process.
+/// A progress line on stderr: a bar with ETA on a terminal, a line now and then elsewhere.
+std::function<void(const Progress&)> progress_line(const Globals& globals);
+/// The same for a job that has files to finish: Ctrl-C stops the job. Before the first call, while
+/// the job is prepared, Ctrl-C ends the process.
 ProgressCallback progress_display(const Globals& globals);
 /// Ends the progress line.
 void finish_progress();

@@ -35,11 +35,9 @@ int fail(const Error& error) {
   return error.exit_code();
 }
 
-ProgressCallback progress_display(const Globals& globals) {
+std::function<void(const Progress&)> progress_line(const Globals& globals) {
   const bool terminal = ::isatty(STDERR_FILENO) != 0;
-  return [terminal, quiet = globals.quiet, last_print = -1e9,
-          preparing = std::make_shared<EndOnInterrupt>()](const Progress& progress) mutable {
-    preparing->release();
+  return [terminal, quiet = globals.quiet, last_print = -1e9](const Progress& progress) mutable {
     // Nothing for the first moments: most commands end before anybody wonders.
     const double interval = terminal ? 0.2 : 10.0;
     if (!quiet && progress.seconds > 1.0 && progress.seconds - last_print >= interval) {
@@ -63,6 +61,14 @@ ProgressCallback progress_display(const Globals& globals) {
       }
       std::fflush(stderr);
     }
+  };
+}
+
+ProgressCallback progress_display(const Globals& globals) {
+  return [show = progress_line(globals)](const Progress& progress) {
+    stop_on_interrupt();
+    if (progress.what == kFinishingFiles) finish_on_interrupt();
+    show(progress);
     return !interrupted();
   };
 }
@@ -125,8 +131,7 @@ void tell_all(const char* heading, const std::vector<Error>& errors) {
 
 Result<World> compile(const Scene& scene, const Globals& globals, const std::string& keyframe) {
   const EndOnInterrupt watched;
-  const ProgressCallback show = progress_display(globals);
-  const ProgressCallback tell_progress = [&](const Progress& progress) {
+  const ProgressCallback tell_progress = [show = progress_line(globals)](const Progress& progress) {
     show(progress);
     return true;  // an interrupt does not wait for the end of it
   };

@@ -5,18 +5,68 @@
 #include <atomic>
 #include <chrono>
 #include <csignal>
+#include <mutex>
+#include <thread>
 #include <utility>
+#include <vector>
 
 #include "command.h"
 
 namespace gloam::cli {
 namespace {
 
+using Clock = std::chrono::steady_clock;
+
+/// What the running command needs after the first signal.
+enum class Phase { kNothing, kStopping, kFinishing };
+
+constexpr std::chrono::milliseconds kTimeToStop{1500};
+constexpr std::chrono::seconds kTimeToFinish{20};
+constexpr std::chrono::milliseconds kPoll{20};  // a signal handler cannot wake a thread
+
 std::atomic<bool> stop_requested{false};
+std::atomic<Phase> phase{Phase::kNothing};
+std::atomic<int> end_scopes{0};
+
+/// Never destroyed: the watcher uses it until the process ends.
+struct CleanUps {
+  std::mutex mutex;
+  std::vector<std::function<void()>> list;
+};
+CleanUps& clean_ups() {
+  static auto& made = *new CleanUps;
+  return made;
+}
 
 void on_signal(int signal) {
   // The second one does not wait for files. SIGXCPU comes every second from then on.
   if (stop_requested.exchange(true) && signal != SIGXCPU) ::_exit(128 + signal);
+}
+
+void end_process(const Error& error) {
+  {
+    const std::lock_guard lock(clean_ups().mutex);
+    for (const auto& clean_up : clean_ups().list)
+      if (clean_up) clean_up();
+  }
+  ::_exit(fail(error));
+}
+
+void watch() {
+  while (!stop_requested) std::this_thread::sleep_for(kPoll);
+  const Clock::time_point signalled = Clock::now();
+  for (;; std::this_thread::sleep_for(kPoll)) {
+    const auto since = Clock::now() - signalled;
+    if (end_scopes > 0 || phase == Phase::kNothing)
+      end_process({ErrorKind::kInterrupted, "interrupted"});
+    if (phase == Phase::kStopping && since > kTimeToStop)
+      end_process({ErrorKind::kInterrupted,
+                   "interrupted: the work did not stop in time, its files are unfinished",
+                   {},
+                   "gloam recover repairs a log; other files are whole up to their last entry"});
+    if (since > kTimeToFinish)
+      end_process({ErrorKind::kInterrupted, "interrupted: finishing the files took too long"});
+  }
 }
 
 }  // namespace
@@ -29,30 +79,30 @@ void catch_interrupts() {
   if (std::signal(SIGHUP, on_signal) == SIG_IGN) std::signal(SIGHUP, SIG_IGN);
   std::signal(SIGPIPE, SIG_IGN);
   std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow is an error where it is written
+  clean_ups();
+  std::thread(watch).detach();
 }
 
 bool interrupted() { return stop_requested; }
 
-EndOnInterrupt::EndOnInterrupt(std::function<void()> clean_up)
-    : clean_up_(std::move(clean_up)), watcher_([this] { watch(); }) {}
-
-void EndOnInterrupt::release() {
-  {
-    const std::lock_guard lock(mutex_);
-    released_ = true;
-  }
-  changed_.notify_all();
-  if (watcher_.joinable()) watcher_.join();
+void stop_on_interrupt() {
+  Phase nothing = Phase::kNothing;
+  phase.compare_exchange_strong(nothing, Phase::kStopping);
 }
 
-void EndOnInterrupt::watch() {
-  constexpr std::chrono::milliseconds kPoll{50};  // a signal's handler can wake nobody
-  std::unique_lock lock(mutex_);
-  while (!changed_.wait_for(lock, kPoll, [this] { return released_; })) {
-    if (!interrupted()) continue;
-    if (clean_up_) clean_up_();
-    ::_exit(fail({ErrorKind::kInterrupted, "interrupted"}));
-  }
+void finish_on_interrupt() { phase = Phase::kFinishing; }
+
+EndOnInterrupt::EndOnInterrupt(std::function<void()> clean_up) {
+  const std::lock_guard lock(clean_ups().mutex);
+  clean_ups().list.push_back(std::move(clean_up));
+  ++end_scopes;
+}
+
+void EndOnInterrupt::release() {
+  if (!std::exchange(is_live_, false)) return;
+  const std::lock_guard lock(clean_ups().mutex);
+  --end_scopes;
+  clean_ups().list.pop_back();  // scopes nest
 }
 
 }  // namespace gloam::cli

@@ -1,19 +1,24 @@
 #pragma once
-// Handling of Ctrl-C, SIGTERM, SIGHUP and SIGXCPU.
+// Handling of Ctrl-C, SIGTERM, SIGHUP and SIGXCPU: the first one acts within two seconds, whatever
+// the program does at that moment.
 
-#include <condition_variable>
 #include <functional>
-#include <mutex>
-#include <thread>
 
 namespace gloam::cli {
 
-/// From now on Ctrl-C, SIGTERM, SIGHUP and SIGXCPU set a flag; a second one ends the process.
+/// From now on Ctrl-C, SIGTERM, SIGHUP and SIGXCPU end the process at once with exit code 130, or,
+/// after stop_on_interrupt(), once the job has stopped; a second one ends it immediately.
 void catch_interrupts();
 bool interrupted();
 
-/// While it lives, the first one ends the process, too: for work that cannot be stopped midway and
-/// has nothing to finish, such as MuJoCo's compiler.
+/// The job checks interrupted() from now on and has files to finish. It gets a moment to stop; if
+/// it does not react, the process ends with an error that says so.
+void stop_on_interrupt();
+/// The job has stopped and finishes its files, which may take longer.
+void finish_on_interrupt();
+
+/// While it lives, the first signal ends the process at once even after stop_on_interrupt(): for
+/// work that cannot stop midway and has nothing to finish, such as MuJoCo's compiler.
 class EndOnInterrupt {
  public:
   /// `clean_up` runs before the end, on another thread, while the work goes on.
@@ -21,17 +26,11 @@ class EndOnInterrupt {
   ~EndOnInterrupt() { release(); }
   EndOnInterrupt(const EndOnInterrupt&) = delete;
   EndOnInterrupt& operator=(const EndOnInterrupt&) = delete;
-  /// From now on there is something to finish.
+  /// Ends the scope early.
   void release();
 
  private:
-  void watch();
-
-  const std::function<void()> clean_up_;
-  std::mutex mutex_;
-  std::condition_variable changed_;
-  bool released_ = false;
-  std::thread watcher_;
+  bool is_live_ = true;
 };
 
 }  // namespace gloam::cli

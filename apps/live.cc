@@ -91,9 +91,11 @@ int run_live(LiveRun run, const LiveCommand& command, EndOnInterrupt& starting) 
     for (const auto& bridge : bridges->list())
       tell("gloam: {}: {}\n", bridge->name(), bridge->address());
   }
+  stop_on_interrupt();
   starting.release();
   begin(run, command);
   const Status status = keep_running(run, command, bridges.get(), log.get());
+  if (log != nullptr) finish_on_interrupt();
   bridges.reset();  // no client changes what the log ends with
   if (page != nullptr) page->stop();
   int code = status.ok() ? 0 : fail(status.error());

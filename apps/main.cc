@@ -64,7 +64,6 @@ int run_program(int argc, char** argv) {
   if (verbose) set_log_level(LogLevel::kDebug);
   if (globals.quiet) set_log_level(LogLevel::kWarning);
   if (const Status status = check_environment(); !status.ok()) return fail(status.error());
-  catch_interrupts();
   return action();
 }
 
@@ -88,6 +87,7 @@ int main(int argc, char** argv) {
   }
 #endif
   gloam::cli::end_when_out_of_memory();
+  gloam::cli::catch_interrupts();
   try {
     const int code = gloam::cli::run_program(argc, argv);
     return code != 0 ? code : gloam::cli::finish_data();

@@ -64,9 +64,8 @@ int convert(ConvertCommand command, const Globals& globals) {
   if (const Status status = apply_packages(command.access, command.packages); !status.ok())
     return fail(status.error());
   const EndOnInterrupt watched;
-  const ProgressCallback show = progress_display(globals);
-  const Result<ObjectReport> made =
-      convert_object(command.object, command.access, [&](const Progress& progress) {
+  const Result<ObjectReport> made = convert_object(
+      command.object, command.access, [show = progress_line(globals)](const Progress& progress) {
         show(progress);
         return true;
       });

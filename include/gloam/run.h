@@ -18,6 +18,9 @@
 
 namespace gloam {
 
+/// Progress::what once a job has stopped and only finishes its files.
+inline constexpr const char* kFinishingFiles = "finishing the files";
+
 struct RunRequest {
   std::filesystem::path out = {};  ///< results folder; empty = nothing is recorded
   bool overwrite = false;          ///< an existing results folder is replaced

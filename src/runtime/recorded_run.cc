@@ -25,6 +25,7 @@
 #include "runtime/log/wanted_topics.h"
 #include "runtime/recorded_run.h"
 #include "runtime/run_metrics.h"
+#include "runtime/run_progress.h"
 #include "runtime/run_to_step.h"
 #include "runtime/sensing_metrics.h"
 #include "runtime/state_table.h"
@@ -197,6 +198,28 @@ RunInfo run_info(const World& world, const RunRequest& request, bool has_media, 
   return info;
 }
 
+using Cameras = std::vector<std::unique_ptr<LiveCamera>>;
+using Lidars = std::vector<std::unique_ptr<LiveLidar>>;
+
+bool is_interrupt(const Status& status) {
+  return !status.ok() && status.error().kind == ErrorKind::kInterrupted;
+}
+
+// Waits until the cameras have made their last pictures. `goes_on` is asked meanwhile; its Error
+// ends the pictures, too.
+Status drain_cameras(const Cameras& cameras, const std::function<Status()>& goes_on) {
+  constexpr std::chrono::milliseconds kLook{20};
+  for (const auto& camera : cameras) {
+    while (!camera->drain_for(kLook)) {
+      const Status status = goes_on();
+      if (status.ok()) continue;
+      for (const auto& one : cameras) one->abandon();
+      return status;
+    }
+  }
+  return {};
+}
+
 // Goes on from the request's checkpoint, in `world`, and posts its Commands.
 Status begin_where_asked(LiveSimulation& simulation, const World& world,
                          const RunRequest& request) {
@@ -248,7 +271,8 @@ Result<RunReport> record_motion(const World& world, const RunRequest& request,
   const double duration = request.duration > 0 ? request.duration : scene.sim.duration;
   const Rational rate = simulation->step_rate();
   GLOAM_TRY(int64_t steps, step_of_time(duration, rate, "a duration"));
-  steps += simulator.latest().step();
+  const int64_t first_step = simulator.latest().step();
+  steps += first_step;
 
   RunReport report;
   // Metrics at their rate, or every step of slower models.
@@ -264,9 +288,9 @@ Result<RunReport> record_motion(const World& world, const RunRequest& request,
     state.emplace(*world.compiled(), world.compiled()->serial);
   std::unique_ptr<Recorder> recorder;
   SensingMetrics sensing;
-  std::vector<std::unique_ptr<LiveCamera>> cameras;
+  Cameras cameras;
   std::unique_ptr<LiveSensors> sensors;
-  std::vector<std::unique_ptr<LiveLidar>> lidars;
+  Lidars lidars;
   std::unique_ptr<LogRecorder> log;
   double prepared = 0;
   if (!request.out.empty()) {
@@ -357,15 +381,28 @@ Result<RunReport> record_motion(const World& world, const RunRequest& request,
     if (log != nullptr) GLOAM_TRY_STATUS(log->status());
     return recorder != nullptr ? recorder->status() : Status();
   };
+  RunProgress done(simulator, first_step, steps, cameras);
+  const ProgressCallback show_done =
+      progress ? [&](const Progress& now) { return progress(done.of(now)); } : ProgressCallback();
   report.status = run_to_step(simulator, steps, cameras.empty() ? "simulating" : "rendering",
-                              seconds_since(start), progress, recording);
+                              seconds_since(start), show_done, recording);
   const Snapshot last = simulator.latest();
   const double simulated = seconds_since(start);
-  simulator.stop();  // ends the queues; what they hold is still delivered
-  for (auto& camera : cameras) {
-    camera->drain();
-    if (report.status.ok()) report.status = camera->status();
+  if (is_interrupt(report.status)) {  // at once: nobody waits for pictures any more
+    for (auto& camera : cameras) camera->abandon();
+    for (auto& lidar : lidars) lidar->abandon();
+    if (sensors != nullptr) sensors->abandon();
   }
+  simulator.stop();  // ends the queues; what they hold is still delivered
+  const Status drawn = drain_cameras(cameras, [&]() -> Status {
+    GLOAM_TRY_STATUS(recording());
+    if (!show_done || show_done({"rendering", 1, seconds_since(start)})) return {};
+    return Error{ErrorKind::kInterrupted, "interrupted"};
+  });
+  if (report.status.ok()) report.status = drawn;
+  if (progress) progress({kFinishingFiles, 1, seconds_since(start)});
+  for (auto& camera : cameras)
+    if (report.status.ok()) report.status = camera->status();
   cameras.clear();
   if (sensors != nullptr) sensors->drain();
   sensors.reset();

@@ -4,7 +4,6 @@
 
 #include <chrono>
 #include <cmath>
-#include <thread>
 
 namespace gloam {
 
@@ -22,9 +21,10 @@ Status run_to_step(Simulator& simulator, int64_t step, const char* what, double 
                    const ProgressCallback& progress, const std::function<Status()>& stop_early) {
   using Clock = std::chrono::steady_clock;
   const auto begin = Clock::now();
+  constexpr std::chrono::milliseconds kLook{10};
   simulator.run_until(step);
-  while (simulator.step_count() < step && simulator.status().ok()) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  // At `step` it still waits for readers that have no room for its last Snapshots.
+  while (!simulator.wait_for(kLook)) {
     const double done = static_cast<double>(simulator.step_count()) / static_cast<double>(step);
     const double seconds = start + std::chrono::duration<double>(Clock::now() - begin).count();
     Status stopped;
@@ -38,7 +38,7 @@ Status run_to_step(Simulator& simulator, int64_t step, const char* what, double 
       return stopped;
     }
   }
-  return simulator.wait();
+  return simulator.status();
 }
 
 }  // namespace gloam

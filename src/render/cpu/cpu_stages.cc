@@ -34,12 +34,14 @@ int64_t CpuStages::begin(const Film& film) {
   return static_cast<int64_t>(tiles_.size());
 }
 
-RenderStats CpuStages::render(const Job& job) {
-  const RenderSettings& settings = job.settings;
+RenderStats CpuStages::render(const Job& all) {
+  const RenderSettings& settings = all.settings;
   const bool adaptive = settings.error > 0;
-  const int64_t count = begin(*job.film);
-  const AdaptivePlan plan = adaptive ? look(job) : AdaptivePlan();
+  const int64_t count = begin(*all.film);
   RenderWatch watch(settings.progress, count);
+  Job job = all;
+  job.watch = &watch;
+  const AdaptivePlan plan = adaptive ? look(job) : AdaptivePlan();
   for_tiles(count, [&](int64_t i) {
     if (watch.stopped()) return;
     const int64_t tile = settings.progress ? scattered(i, count) : i;

@@ -68,6 +68,10 @@ Status LiveCamera::follow(const std::shared_ptr<const CompiledWorld>& world) {
   GLOAM_TRY(auto shared, renderers_.of(world));
   GLOAM_TRY(auto sensor, CameraSensor::create(shared->description, request_, seed_));
   GLOAM_TRY_STATUS(sensor->set_temperatures(world->scene.temperatures));
+  sensor->set_progress([this](double part) {
+    part_ = part;
+    return !thread_.is_abandoned();
+  });
   const Intrinsics& k = sensor->intrinsics();
   const PictureMemory memory = sensor->memory();
   constexpr uint64_t kInFlight = 2;  // frames that are made and looked at
@@ -159,6 +163,8 @@ Status LiveCamera::capture(const SnapshotWindow& window) {
   previous_is_still_ = still;
   auto frame = sensor_->capture(*shared_->renderer, shared_->mutex, keys,
                                 continuous ? previous_ : now, index);
+  part_ = 0;
+  if (frame == nullptr || thread_.is_abandoned()) return {};
   on_frame_(std::move(frame));
   std::swap(now, previous_);
   has_previous_ = true;

@@ -33,6 +33,16 @@ class LiveCamera final : public CameraStream {
   Status status() const override { return thread_.status(); }
   /// Waits until the simulation has stopped and every frame was delivered.
   void drain() { thread_.drain(); }
+  /// The same, for at most `time`. Whether it has ended.
+  bool drain_for(std::chrono::milliseconds time) { return thread_.drain_for(time); }
+  /// Gives up the picture that is being made and those that wait: no frame is delivered any more.
+  void abandon() { thread_.abandon(); }
+  /// Pictures made, with the part of the next one, and whether no more are due yet.
+  double pictures_made() const {
+    return static_cast<double>(thread_.taken()) + part_.load(std::memory_order_relaxed);
+  }
+  bool is_idle() const { return thread_.is_idle(); }
+  Rational rate() const { return request_.rate; }
 
  private:
   LiveCamera(Simulator& simulator, SharedRenderers& renderers, const CameraRequest& request,
@@ -61,7 +71,8 @@ class LiveCamera final : public CameraStream {
   bool previous_is_still_ = false;  ///< it was an instant by itself, not a window
   mutable std::mutex mutex_;        // guards sensor_ against set_pose() and pose()
   std::atomic<bool> refresh_wanted_{false};
-  StreamThread thread_;  // last: it uses the others
+  std::atomic<double> part_{0};  // of the picture that is being made, 0 … 1
+  StreamThread thread_;          // last: it uses the others
 };
 
 }  // namespace gloam

@@ -24,6 +24,8 @@ class LiveLidar final : public LidarStream {
   int64_t dropped() const override { return thread_.dropped(); }
   /// Waits until the queue has ended (the simulation stopped) and every scan was delivered.
   void drain() { thread_.drain(); }
+  /// Delivers nothing more, what waits included.
+  void abandon() { thread_.abandon(); }
   Status status() const override { return thread_.status(); }
   int64_t complete_at(int64_t from) const override;
   void flush() override { thread_.flush(); }

@@ -39,6 +39,8 @@ class LiveSensors final : public SensorStream {
   Status status() const override { return thread_.status(); }
   /// Waits until the simulation has stopped and every message was delivered.
   void drain() { thread_.drain(); }
+  /// Delivers nothing more, what waits included.
+  void abandon() { thread_.abandon(); }
 
  private:
   using WorldPtr = std::shared_ptr<const CompiledWorld>;

@@ -28,6 +28,7 @@ void StreamThread::run() {
 Status StreamThread::take_all() {
   try {
     while (const SnapshotWindow window = job_.next()) {
+      if (is_abandoned()) break;
       GLOAM_TRY_STATUS(job_.take(window));
       const std::lock_guard lock(mutex_);
       ++taken_;
@@ -69,6 +70,28 @@ void StreamThread::flush() {
 void StreamThread::drain() {
   if (thread_.joinable()) thread_.join();
 }
+
+bool StreamThread::drain_for(std::chrono::milliseconds time) {
+  if (!thread_.joinable()) return true;
+  {
+    std::unique_lock lock(mutex_);
+    if (!changed_.wait_for(lock, time, [this] { return has_ended_; })) return false;
+  }
+  drain();
+  return true;
+}
+
+void StreamThread::abandon() {
+  is_abandoned_ = true;
+  if (queue_ != nullptr) queue_->close();
+}
+
+int64_t StreamThread::taken() const {
+  const std::lock_guard lock(mutex_);
+  return taken_;
+}
+
+bool StreamThread::is_idle() const { return taken() >= queue_->handed_out(); }
 
 Status StreamThread::status() const {
   const std::lock_guard lock(mutex_);

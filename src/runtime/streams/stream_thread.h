@@ -2,6 +2,8 @@
 // The thread of one stream: takes Snapshots, or windows of them, out of a queue until the
 // simulation ends, the stream is closed or `take` fails, and says why.
 
+#include <atomic>
+#include <chrono>
 #include <condition_variable>
 #include <functional>
 #include <memory>
@@ -37,6 +39,14 @@ class StreamThread {
   void close();
   /// Waits until the simulation has stopped and all was taken.
   void drain();
+  /// The same, for at most `time`. Whether all was taken.
+  bool drain_for(std::chrono::milliseconds time);
+  /// Takes nothing more, what waits included; `take` may ask is_abandoned() to return early.
+  void abandon();
+  bool is_abandoned() const { return is_abandoned_.load(std::memory_order_relaxed); }
+  /// Windows taken so far, and whether there are no others yet.
+  int64_t taken() const;
+  bool is_idle() const;
   /// As Stream::flush().
   void flush();
   int64_t complete_at(int64_t from) const { return queue_->complete_at(from); }
@@ -52,6 +62,7 @@ class StreamThread {
 
   std::shared_ptr<SnapshotQueue> queue_;
   StreamJob job_;
+  std::atomic<bool> is_abandoned_{false};
   mutable std::mutex mutex_;  // guards what follows
   std::condition_variable changed_;
   Status status_;

@@ -50,7 +50,7 @@ void Tile::sample(Wave<State>* wave, int index, const Start& start, const Advanc
 
 void Tile::render_path(const SampleRange& range) {
   std::vector<PathResult> results(static_cast<size_t>(count_ * std::min(kTogether, range.count)));
-  for (int done = 0; done < range.count; done += kTogether) {
+  for (int done = 0; done < range.count && job_.may_continue(); done += kTogether) {
     const int together = std::min(kTogether, range.count - done);
     trace_paths({range.seed, range.first + done, together}, results.data());
     for (int path = 0; path < count_ * together; ++path) {
@@ -63,7 +63,7 @@ void Tile::render_path(const SampleRange& range) {
 
 void Tile::render_direct(CenterHits* centers) {
   const auto wave = std::make_unique<Wave<DirectState>>();
-  for (int index = 0; index < job_.settings.spp; ++index) {
+  for (int index = 0; index < job_.settings.spp && job_.may_continue(); ++index) {
     sample(
         wave.get(), index, direct_start,
         [this](DirectState* state, bool found, const RayHit& hit) {

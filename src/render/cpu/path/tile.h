@@ -3,6 +3,7 @@
 
 #include <immintrin.h>
 
+#include "render/cpu/path/watch.h"
 #include "render/cpu/tracer/cpu_tracer.h"
 #include "render/kernel/camera/channels.h"
 #include "render/kernel/camera/pixel_mean.h"
@@ -38,6 +39,8 @@ struct Job {
   /// exact channels too.
   bool centered = false;
   Film* film = nullptr;
+  RenderWatch* watch = nullptr;  ///< asked between samples whether to go on; null = to the end
+  bool may_continue() const { return watch == nullptr || watch->may_continue(); }
 };
 
 /// Pixel `index` of a full tile: 4 x 4 blocks, so that packets of primary rays are compact.
