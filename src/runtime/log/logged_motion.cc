@@ -2,10 +2,22 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "runtime/live_simulation.h"
 #include "sim/state/state_transfer.h"
 
 namespace gloam {
+namespace {
+
+// Whether two sensors measure the same quantity in the same way.
+bool is_same_sensor(const mjModel& a, int i, const mjModel& b, int k) {
+  return a.sensor_type[i] == b.sensor_type[k] && a.sensor_dim[i] == b.sensor_dim[k] &&
+         a.sensor_objtype[i] == b.sensor_objtype[k] && a.sensor_reftype[i] == b.sensor_reftype[k] &&
+         a.sensor_cutoff[i] == b.sensor_cutoff[k];
+}
+
+}  // namespace
 
 Result<std::unique_ptr<LoggedMotion>> LoggedMotion::create(
     const LoggedRuns::Run& run, const std::shared_ptr<const CompiledWorld>& world) {
@@ -32,6 +44,19 @@ Status LoggedMotion::advance(int64_t step, mjData* data) {
                  "`gloam replay LOG --verify` tells where"};
   transfer_state(same_, stepper.data(), *data);
   return {};
+}
+
+// Readings depend on forces and on the order of a step, which poses do not tell: those of the
+// logged run are the exact ones. A sensor that another scene has changed measures anew.
+void LoggedMotion::read_sensors(std::span<double> sensordata) const {
+  const mjModel &from = *same_.before.model, &to = *same_.after.model;
+  const std::span<const double> logged = restepper_->loop().stepper().sensordata();
+  for (size_t sensor = 0; sensor < same_.sensor.size(); ++sensor) {
+    const int before = same_.sensor[sensor];
+    if (before < 0 || !is_same_sensor(from, before, to, static_cast<int>(sensor))) continue;
+    std::copy_n(logged.begin() + from.sensor_adr[before], from.sensor_dim[before],
+                sensordata.begin() + to.sensor_adr[sensor]);
+  }
 }
 
 }  // namespace gloam

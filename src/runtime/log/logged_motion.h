@@ -18,6 +18,7 @@ class LoggedMotion final : public Motion {
   static Result<std::unique_ptr<LoggedMotion>> create(
       const LoggedRuns::Run& run, const std::shared_ptr<const CompiledWorld>& world);
   Status advance(int64_t step, mjData* data) override;
+  void read_sensors(std::span<double> sensordata) const override;
 
  private:
   LoggedMotion(std::unique_ptr<Restepper> restepper, const CompiledWorld& from,

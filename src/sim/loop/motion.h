@@ -5,6 +5,7 @@
 #include <mujoco/mujoco.h>
 
 #include <cstdint>
+#include <span>
 
 #include "gloam/result.h"
 
@@ -16,6 +17,9 @@ class Motion {
   /// Brings positions, velocities, mocap poses, controls and time of `data`, of the simulation's
   /// own World, to `step`, the next one; 0 at first. Error: the motion has no such step.
   virtual Status advance(int64_t step, mjData* data) = 0;
+  /// After advance(): writes the readings of MuJoCo's sensors that the motion has recorded over
+  /// those computed from the poses. `sensordata` is that of the simulation's own World.
+  virtual void read_sensors(std::span<double> /*sensordata*/) const {}
 };
 
 }  // namespace gloam

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <optional>
+#include <span>
 
 #include "gloam/command.h"
 #include "gloam/physics_memory.h"
@@ -70,6 +71,10 @@ class Stepper {
   double time() const { return state_[0]; }
   uint64_t hash() const { return hash_; }
   uint64_t seed() const { return seed_; }
+  /// Readings of MuJoCo's sensors that the present snapshot has.
+  std::span<const double> sensordata() const {
+    return {own_sensors_ ? sensors_.data() : data_->sensordata, sensors_.size()};
+  }
   const mjModel& model() const { return model_; }
   mjData& data() { return *data_; }
   PhysicsMemory memory() const;
@@ -91,6 +96,7 @@ class Stepper {
   bool stand_at_state();
   void change_live(const SetLiveField& change);
   bool stand_where_moved();
+  bool begin_where_moved();
   bool step_along();
   bool set_live(const std::shared_ptr<const LiveFields>& live);
   bool own_the_field(LiveFieldId field);

@@ -15,7 +15,7 @@ bool Stepper::follow(std::unique_ptr<Motion> motion) {
   std::erase_if(effects_, [](const auto& effect) { return effect->moves_bodies(); });
   if (const Status moved = motion_->advance(0, data_.get()); !moved.ok())
     return fail(moved.error());
-  return stand_where_moved() || fail({ErrorKind::kInput, mujoco_error_message()});
+  return begin_where_moved() || fail({ErrorKind::kInput, mujoco_error_message()});
 }
 
 bool Stepper::jump(int64_t step) {
@@ -23,10 +23,19 @@ bool Stepper::jump(int64_t step) {
   const int64_t to = effects_.empty() ? step : 0;
   if (const Status moved = motion_->advance(to, data_.get()); !moved.ok())
     return fail(moved.error());
-  if (!stand_where_moved()) return fail({ErrorKind::kInput, mujoco_error_message()});
+  if (!begin_where_moved()) return fail({ErrorKind::kInput, mujoco_error_message()});
   step_ = to;
   hash_ = hash_span<double>(state_, hash_);
   return true;
+}
+
+// The first instant: its sensors are of its own state.
+bool Stepper::begin_where_moved() {
+  const bool ok = stand_where_moved();
+  std::copy_n(data_->sensordata, sensors_.size(), sensors_.begin());
+  sensor_stamp_ = state_[0];
+  motion_->read_sensors(sensors_);
+  return ok;
 }
 
 // Poses, contacts and sensors of the state that is in mjData.
@@ -35,9 +44,7 @@ bool Stepper::stand_where_moved() {
   mjData* data = data_.get();
   const bool ok = try_mujoco([=] { mj_forward(model, data); });
   mj_getState(model, data, state_.data(), mjSTATE_INTEGRATION);
-  std::copy_n(data->sensordata, sensors_.size(), sensors_.begin());
   own_sensors_ = true;
-  sensor_stamp_ = state_[0];
   snapshot_ = {};
   return ok;
 }
@@ -53,9 +60,13 @@ bool Stepper::step_along() {
     for (const auto& effect : effects_) effect->end_step(model_);
     std::copy(applied_.begin(), applied_.end(), data->qfrc_applied);
   }
+  // A step of physics measures the state that it starts from, and so does this one.
+  std::copy_n(data->sensordata, sensors_.size(), sensors_.begin());
+  sensor_stamp_ = state_[0];
   if (const Status moved = motion_->advance(step_ + 1, data); !moved.ok())
     return fail(moved.error());
   if (!stand_where_moved()) return fail({ErrorKind::kInput, mujoco_error_message()});
+  motion_->read_sensors(sensors_);
   for (const auto& effect : effects_) effect->advance(context(step_ + 1));
   for (const auto& effect : effects_) effect->observe(context(step_ + 1));
   ++step_;
