@@ -53,12 +53,7 @@ void refuse_beside_log(const CLI::App& command, const std::vector<const CLI::Opt
 
 }  // namespace
 
-void RunOptions::add_to(CLI::App& command) {
-  const std::vector<CLI::Option*> others = command.get_options();
-  command.add_option("--timestep", timestep, "Physics time step in seconds; default: the model's")
-      ->check(positive_number());
-  command.add_option("--camera", cameras, "Camera by name (repeatable); default: all");
-  command.add_option("--resolution", resolution, "WIDTHxHEIGHT of every camera");
+void RenderFlags::add_to(CLI::App& command) {
   command
       .add_option(
           "--spp", spp,
@@ -92,6 +87,50 @@ void RunOptions::add_to(CLI::App& command) {
   command.add_flag("--no-denoise", no_denoise, "Show the samples as they are");
   command.add_option("--threads", threads, "Threads for rendering; 0 = all")
       ->check(CLI::Range(0, 1024));
+}
+
+void RenderFlags::apply_to(RenderOptions* render) const {
+  if (error) {
+    render->error = error;
+    render->spp.reset();  // the scene's is a number for every pixel
+  }
+  if (spp) render->spp = *spp;
+  if (max_depth) render->max_depth = *max_depth;
+  if (!tier.empty()) render->tier = tier;
+  if (!device.empty()) render->device = device;
+  if (!look.empty()) render->look = look;
+  if (ev100) render->ev100 = *ev100;
+  if (!groups.empty()) render->groups = groups;
+  if (sites) render->sites = true;
+  if (no_denoise) render->denoise = false;
+}
+
+std::vector<std::pair<std::string, std::string>> RenderFlags::as_settings() const {
+  constexpr int kMostAdaptive = 4096;  // as RenderOptions::samples() with an error bound
+  std::vector<std::pair<std::string, std::string>> list;
+  const auto add = [&list](const char* option, const auto& value) {
+    list.emplace_back(fmt::format("render.{}", option), fmt::format("{}", value));
+  };
+  if (error) add("error", *error);
+  if (error || spp) add("spp", spp.value_or(kMostAdaptive));
+  if (max_depth) add("max_depth", *max_depth);
+  if (!tier.empty()) add("tier", tier);
+  if (!device.empty()) add("device", device);
+  if (!look.empty()) add("look", look);
+  if (ev100) add("ev100", *ev100);
+  if (!groups.empty()) add("groups", fmt::format("[{}]", fmt::join(groups, ", ")));
+  if (sites) add("sites", true);
+  if (no_denoise) add("denoise", false);
+  return list;
+}
+
+void RunOptions::add_to(CLI::App& command) {
+  const std::vector<CLI::Option*> others = command.get_options();
+  command.add_option("--timestep", timestep, "Physics time step in seconds; default: the model's")
+      ->check(positive_number());
+  command.add_option("--camera", cameras, "Camera by name (repeatable); default: all");
+  command.add_option("--resolution", resolution, "WIDTHxHEIGHT of every camera");
+  RenderFlags::add_to(command);
   command
       .add_option("--output", outputs,
                   fmt::format("What to record: {}", fmt::join(kRecordOutputs, " ")))
@@ -128,19 +167,7 @@ Result<Scene> RunOptions::load(const std::string& file) {
   GLOAM_TRY(Scene scene, SceneOptions::load(file));
   if (duration) scene.sim.duration = *duration;
   if (timestep) scene.sim.timestep = *timestep;
-  if (error) {
-    scene.render.error = error;
-    scene.render.spp.reset();  // the scene's is a number for every pixel
-  }
-  if (spp) scene.render.spp = *spp;
-  if (max_depth) scene.render.max_depth = *max_depth;
-  if (!tier.empty()) scene.render.tier = tier;
-  if (!device.empty()) scene.render.device = device;
-  if (!look.empty()) scene.render.look = look;
-  if (ev100) scene.render.ev100 = *ev100;
-  if (!groups.empty()) scene.render.groups = groups;
-  if (sites) scene.render.sites = true;
-  if (no_denoise) scene.render.denoise = false;
+  RenderFlags::apply_to(&scene.render);
   set_thread_count(threads);
   return scene;
 }

@@ -27,15 +27,26 @@ struct SceneOptions {
   Result<World> compile(const std::string& file, const Globals& globals);
 };
 
-/// Options of commands that run or render it.
-struct RunOptions : SceneOptions {
-  std::optional<double> duration, timestep, ev100, error;
+/// How pictures are made, instead of as the scene says.
+struct RenderFlags {
+  std::optional<double> ev100, error;
   std::optional<int> spp, max_depth;
-  std::string tier, device, look, resolution;
-  std::vector<std::string> cameras, outputs;
+  std::string tier, device, look;
   std::vector<int> groups;
   bool no_denoise = false, sites = false;
   int threads = 0;
+
+  void add_to(CLI::App& command);
+  void apply_to(RenderOptions* render) const;
+  /// The same as --set would change them: option of the scene and value.
+  std::vector<std::pair<std::string, std::string>> as_settings() const;
+};
+
+/// Options of commands that run or render it.
+struct RunOptions : SceneOptions, RenderFlags {
+  std::optional<double> duration, timestep;
+  std::string resolution;
+  std::vector<std::string> cameras, outputs;
 
   void add_to(CLI::App& command);
   Result<Scene> load(const std::string& file);

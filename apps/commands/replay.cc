@@ -10,10 +10,12 @@
 #include "gloam/log.h"
 #include "gloam/log_player.h"
 #include "gloam/log_replay.h"
+#include "gloam/program.h"
 #include "json_text.h"
 #include "live.h"
 #include "outputs.h"
 #include "print.h"
+#include "replay_flags.h"
 #include "report.h"
 #include "run_options.h"
 
@@ -27,6 +29,7 @@ struct ReplayCommand {
   int64_t run = 0, variants = 0;
   double duration = 0;
   bool verify = false, poses = false, restep = false, overwrite = false;
+  RenderFlags render;
   LiveCommand live;
 };
 
@@ -42,6 +45,7 @@ Result<LogReplay> replay_of(const ReplayCommand& command) {
     GLOAM_TRY(auto split, split_setting(setting));
     replay.settings.push_back(std::move(split));
   }
+  for (auto& setting : command.render.as_settings()) replay.settings.push_back(std::move(setting));
   GLOAM_TRY_STATUS(check_outputs(command.outputs));
   replay.outputs = command.outputs;
   replay.request.out = command.out;
@@ -89,6 +93,7 @@ int play(const ReplayCommand& command, const LogReplay& replay) {
   run.view.height = replay.request.height;
   if (!replay.request.cameras.empty()) run.view.camera = replay.request.cameras.front();
   run.view.player = player->get();
+  command.render.apply_to(&run.view.render);
   if (replay.request.duration > 0)
     run.duration = std::min(replay.request.duration, (*player)->end());
   run.bridges = command.live.options({});
@@ -161,6 +166,7 @@ void add_replay(CLI::App& app, Globals& globals, Action& action) {
                   "Seed of [[randomize]]s of overlays, of the first variant");
   sub->add_option("--set", command->settings,
                   "Change what is seen, as weather.visibility=8 (repeatable)");
+  command->render.add_to(*sub);
   sub->add_option("--out", command->out, "Results folder of the run as it is seen now");
   sub->add_option("--log", command->to_log, "New log of it");
   sub->add_flag("--overwrite", command->overwrite, "Replace an existing results folder");
@@ -176,10 +182,15 @@ void add_replay(CLI::App& app, Globals& globals, Action& action) {
   sub->footer(
       "Exit codes of --verify: 0 equal, 1 different, 3 a run could not be verified\nExamples:\n  "
       "gloam replay run.mcap --verify\n  gloam replay run.mcap --set weather.visibility=8 --set "
-      "render.tier=direct --out results/foggy\n  gloam replay run.mcap --variants 8 --randomize "
+      "sky.sun_elevation=4 --tier direct --out results/foggy\n  gloam replay run.mcap --variants 8 "
+      "--randomize "
       "skies.toml --out results/skies\n  gloam replay run.mcap --view");
-  sub->callback([&globals, &action, command] {
-    action = [&globals, command] { return replay(*command, globals); };
+  sub->callback([&globals, &action, command, sub] {
+    action = [&globals, command, sub] {
+      if (const Status status = refuse_void_flags(*sub); !status.ok()) return fail(status.error());
+      set_thread_count(command->render.threads);
+      return replay(*command, globals);
+    };
   });
 }
 

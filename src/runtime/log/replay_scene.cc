@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "gloam/options.h"
+#include "runtime/log/void_options.h"
 #include "sim/state/same_physics.h"
 
 namespace gloam {
@@ -66,6 +67,7 @@ Result<World> compile_replay(const LogReplay& replay, const LoggedRuns::Run& run
   const CompiledWorld& logged = *run.record.chapters.front().world;
   GLOAM_TRY(const Scene scene, changed_scene(replay, logged.written));
   if (replay.motion == ReplayMotion::kNewRun) return compile_scene(scene, logged);
+  GLOAM_TRY_STATUS(check_options_act(logged.written, scene));
   Result<World> world = compile_alike(scene, logged);
   if (!world.ok()) return name_the_cause(replay, logged, world.error());
   return world;

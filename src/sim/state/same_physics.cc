@@ -18,6 +18,11 @@ bool is_look(std::string_view name) {
   return name == "tendon_width";
 }
 
+// Options that the weather sets, too: in a replay they move smoke, not bodies.
+bool is_of_the_air(std::string_view option) {
+  return option == "wind" || option == "density" || option == "viscosity";
+}
+
 }  // namespace
 
 std::string physical_difference(const mjModel& a, const mjModel& b) {
@@ -44,8 +49,12 @@ std::string physical_difference(const mjModel& a, const mjModel& b) {
   MJMODEL_POINTERS_ACTUATOR
 #undef XNV
 #undef X
-  compare("opt.timestep", &a.opt.timestep, &b.opt.timestep, sizeof(a.opt.timestep));
-  compare("opt.gravity", a.opt.gravity, b.opt.gravity, sizeof(a.opt.gravity));
+#define X(type, name, n) \
+  if (!is_of_the_air(#name)) compare("opt." #name, &a.opt.name, &b.opt.name, sizeof(a.opt.name));
+#define XVEC X
+  MJOPTION_FIELDS
+#undef XVEC
+#undef X
   return first;
 }
 

@@ -1,0 +1,89 @@
+#include "runtime/log/void_options.h"
+
+#include <fmt/format.h>
+
+#include <map>
+#include <string>
+#include <string_view>
+
+#include "gloam/options.h"
+
+namespace gloam {
+namespace {
+
+struct VoidOption {
+  std::string_view table;
+  std::string_view name;  ///< "" = all of the table
+  std::string_view hint;
+};
+constexpr std::string_view kRestep = "--restep runs the changed scene anew, by its own physics";
+constexpr VoidOption kVoidOptions[] = {
+    {"sim", "duration", "--duration replays a part of the run"},
+    {"sim", "seed", "--seed draws the [[randomize]] tables of overlays; --restep runs it anew"},
+    {"sim", "timestep", kRestep},
+    {"robot", "controller", kRestep},
+    {"robot", "keyframe", kRestep},
+    {"push", "", kRestep},
+    {"navigation", "", kRestep},
+    {"agent", "position", kRestep},
+    {"agent", "heading", kRestep},
+    {"agent", "speed", kRestep},
+    {"agent", "behavior", kRestep},
+    {"agent", "route", kRestep},
+    {"agent", "loop", kRestep},
+    {"agent", "tree", kRestep},
+    {"agent", "start", kRestep},
+    {"agent", "yields", kRestep},
+    {"crowd", "speed", kRestep},
+    {"crowd", "yields", kRestep},
+    {"adversity", "people_speed", kRestep},
+    {"bridge", "", "--ros2, --zmq and --foxglove serve a replay"},
+};
+
+/// "controller" of "robot.go1.controller.kp", "seed" of "sim.seed".
+std::string_view option_of(std::string_view path, std::string_view table) {
+  const bool is_list = table == "robot" || table == "agent" || table == "crowd";
+  for (int parts = is_list ? 2 : 1; parts > 0; --parts) {
+    const size_t dot = path.find('.');
+    if (dot == std::string_view::npos) return {};
+    path.remove_prefix(dot + 1);
+  }
+  return path.substr(0, path.find('.'));
+}
+
+const VoidOption* find_void(std::string_view path) {
+  const std::string_view table = path.substr(0, path.find('.'));
+  for (const VoidOption& option : kVoidOptions)
+    if (option.table == table && (option.name.empty() || option.name == option_of(path, table)))
+      return &option;
+  return nullptr;
+}
+
+std::map<std::string, std::string> values_of(const Scene& scene) {
+  std::map<std::string, std::string> values;
+  for (OptionInfo& option : list_options(scene))
+    if (find_void(option.path) != nullptr) values[option.path] = std::move(option.value);
+  return values;
+}
+
+}  // namespace
+
+Status check_options_act(const Scene& logged, const Scene& changed) {
+  std::map<std::string, std::string> before = values_of(logged);
+  std::string other;
+  for (const auto& [path, value] : values_of(changed)) {
+    const auto same = before.extract(path);
+    if (same.empty() ? !value.empty() : same.mapped() != value) {
+      other = path;
+      break;
+    }
+  }
+  if (other.empty() && !before.empty()) other = before.begin()->first;  // an overlay took it away
+  if (other.empty()) return {};
+  return Error{ErrorKind::kUsage,
+               fmt::format("'{}' has no effect in a replay: bodies move as they are logged", other),
+               {},
+               std::string(find_void(other)->hint)};
+}
+
+}  // namespace gloam

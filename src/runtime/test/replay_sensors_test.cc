@@ -1,0 +1,155 @@
+// What a replay measures, and what of a scene changes nothing in it.
+
+#include <gmock/gmock.h>
+
+#include <fstream>
+#include <iterator>
+
+#include "gloam/log_replay.h"
+#include "gloam/run.h"
+#include "scene/test/temp_folder.h"
+
+namespace gloam {
+namespace {
+
+using testing::HasSubstr;
+namespace fs = std::filesystem;
+
+// Contacts, a motor and an impulse: readings that no pose tells.
+constexpr const char* kMeasured = R"(<mujoco model="m"><option timestep="0.002"/>
+<worldbody><light pos="0 0 4"/><geom type="plane" size="5 5 .1"/>
+<body name="box" pos="0 0 .3" euler="20 30 0"><freejoint/>
+  <geom type="box" size=".2 .1 .1" mass="2"/><site name="imu"/></body>
+<body name="arm" pos="1 0 1"><joint name="swing" axis="0 1 0"/>
+  <geom type="capsule" size=".05" fromto="0 0 0 .5 0 0"/><site name="wrist" pos=".5 0 0"/></body>
+</worldbody>
+<actuator><position name="swing" joint="swing" kp="20"/></actuator>
+<sensor><accelerometer name="acc" site="imu"/><gyro name="gyro" site="imu"/>
+<touch name="touch" site="imu"/><force name="force" site="wrist"/>
+<jointpos name="angle" joint="swing"/><actuatorfrc name="effort" actuator="swing"/></sensor>
+</mujoco>)";
+
+constexpr const char* kScene = R"(
+[sim]
+seed = 5
+[record]
+outputs = ["sensors", "state"]
+[[robot]]
+name = "toy"
+file = "m.xml"
+[robot.controller]
+type = "joint_position"
+target = [0.7]
+[[push]]
+body = "toy/box"
+time = 0.1
+velocity = [0.5, 0, 1]
+[[sensor]]
+name = "toy/acc"
+noise = 0.02
+[[camera]]
+name = "eye"
+position = [-3, -1, 1.5]
+look_at = [0, 0, 0.3]
+)";
+
+std::string text_of(const fs::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+class ReplayedSensors : public testing::Test {
+ protected:
+  ReplayedSensors() {
+    folder_.write("m.xml", kMeasured);
+    folder_.write("s.toml", kScene);
+    RunRequest request{.out = folder_.path() / "first"};
+    request.log.file = replay_.log = folder_.path() / "run.mcap";
+    request.log.topics = {"/tf"};
+    request.duration = 0.3;
+    request.simulation.seed = 5;
+    const auto report =
+        run_and_record(*World::compile(*load_scene(folder_.path() / "s.toml")), request, {});
+    EXPECT_TRUE(report.ok()) << report.error().to_string();
+    replay_.request.out = folder_.path() / "again";
+    replay_.request.overwrite = true;
+  }
+  std::string refusal(const std::string& option, const std::string& value) {
+    replay_.settings = {{option, value}};
+    const auto report = replay_log(replay_, {});
+    return report.ok() ? "taken" : report.error().message + " | " + report.error().hint;
+  }
+
+  TempFolder folder_;
+  LogReplay replay_;
+};
+
+TEST_F(ReplayedSensors, AreTheRecordedOnesToTheBit) {
+  replay_.settings = {{"camera.eye.fovy", "50"}};
+  const auto report = replay_log(replay_, {});
+  ASSERT_TRUE(report.ok()) << report.error().to_string();
+  int files = 0;
+  for (const auto& entry : fs::directory_iterator(folder_.path() / "first/sensors")) {
+    const fs::path again = folder_.path() / "again/sensors" / entry.path().filename();
+    EXPECT_EQ(text_of(entry.path()), text_of(again)) << again;
+    ++files;
+  }
+  EXPECT_EQ(files, 6);
+  EXPECT_EQ(text_of(folder_.path() / "first/state.csv"),
+            text_of(folder_.path() / "again/state.csv"));
+}
+
+// The forces are not in the poses, but what follows from positions alone is.
+TEST_F(ReplayedSensors, OfPosesHaveTheStampsOfTheRecordedOnes) {
+  replay_.motion = ReplayMotion::kPoses;
+  ASSERT_TRUE(replay_log(replay_, {}).ok());
+  std::ifstream first(folder_.path() / "first/sensors/toy_angle.csv");
+  std::ifstream again(folder_.path() / "again/sensors/toy_angle.csv");
+  std::string a, b;
+  while (std::getline(first, a)) {
+    ASSERT_TRUE(std::getline(again, b));
+    EXPECT_EQ(a.substr(0, a.rfind(',')), b.substr(0, b.rfind(',')));  // sample, step, times
+  }
+}
+
+TEST_F(ReplayedSensors, RefuseOptionsThatChangeNothing) {
+  const std::pair<const char*, const char*> changes[] = {
+      {"robot.toy.controller.target", "[0.2]"},
+      {"robot.toy.controller.kp", "3"},
+      {"robot.toy.controller.type", "none"},
+      {"sim.seed", "9"},
+      {"sim.duration", "0.1"},
+      {"sim.timestep", "0.001"},
+      {"push.0.time", "0.2"},
+      {"navigation.cell", "0.2"},
+  };
+  for (const auto& [option, value] : changes) {
+    const std::string says = refusal(option, value);
+    EXPECT_THAT(says, HasSubstr(option));
+    EXPECT_THAT(says, HasSubstr("no effect")) << option;
+  }
+  EXPECT_THAT(refusal("sim.seed", "5"), "taken") << "it is as it was";
+  EXPECT_THAT(refusal("sensor.0.noise", "0.1"), "taken");
+  EXPECT_THAT(refusal("record.metrics_rate", "50"), "taken");
+}
+
+TEST_F(ReplayedSensors, RefuseOverlaysThatChangeNothing) {
+  folder_.write("o.toml",
+                "[[robot]]\nname = \"toy\"\nfile = \"m.xml\"\n[robot.controller]\ntype = "
+                "\"joint_position\"\nkp = 7\n");
+  replay_.overlays = {folder_.path() / "o.toml"};
+  const auto report = replay_log(replay_, {});
+  ASSERT_FALSE(report.ok());
+  EXPECT_THAT(report.error().message, HasSubstr("robot.toy.controller.kp"));
+}
+
+TEST_F(ReplayedSensors, OfANewRunTakeAllOptions) {
+  replay_.motion = ReplayMotion::kNewRun;
+  replay_.settings = {{"sim.duration", "0.1"}, {"robot.toy.controller.target", "[0.2]"}};
+  const auto report = replay_log(replay_, {});
+  ASSERT_TRUE(report.ok()) << report.error().to_string();
+  EXPECT_EQ(report->steps, 50);
+}
+
+}  // namespace
+}  // namespace gloam
