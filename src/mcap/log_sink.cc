@@ -8,6 +8,8 @@
 #include <cstring>
 #include <utility>
 
+#include "base/own_file.h"
+
 namespace gloam {
 
 Result<std::unique_ptr<LogSink>> FileSink::create(const std::filesystem::path& path) {
@@ -20,7 +22,9 @@ Result<std::unique_ptr<LogSink>> FileSink::create(const std::filesystem::path& p
                  cause == EEXIST ? "choose another name or remove it"
                                  : "check the folder and its permissions"};
   }
-  return std::unique_ptr<LogSink>(new FileSink(fd, path.string()));
+  std::unique_ptr<FileSink> sink(new FileSink(fd, path.string()));
+  GLOAM_TRY_STATUS(lock_for_writing(fd, path));
+  return std::unique_ptr<LogSink>(std::move(sink));
 }
 
 FileSink::~FileSink() {
@@ -28,12 +32,14 @@ FileSink::~FileSink() {
 }
 
 Status FileSink::write(std::span<const uint8_t> bytes) {
+  GLOAM_TRY_STATUS(check_not_cut(fd_, path_, written_));
   for (size_t done = 0; done < bytes.size();) {
     const ssize_t n = ::write(fd_, bytes.data() + done, bytes.size() - done);
     if (n < 0 && errno == EINTR) continue;
     if (n == 0) errno = ENOSPC;
     if (n <= 0) return failure("write the log");
     done += static_cast<size_t>(n);
+    written_ += static_cast<uint64_t>(n);
   }
   return {};
 }
@@ -49,8 +55,10 @@ Status FileSink::sync() {
 
 Status FileSink::close() {
   const int fd = std::exchange(fd_, -1);
-  if (fd >= 0 && ::close(fd) != 0) return failure("close the log");
-  return {};
+  if (fd < 0) return {};
+  const Status in_place = check_in_place(fd, path_, written_);
+  if (::close(fd) != 0) return failure("close the log");
+  return in_place;
 }
 
 Error FileSink::failure(const char* what) const {

@@ -22,7 +22,9 @@ class LogSink {
   virtual Status close() = 0;
 };
 
-/// A new file. Writes go to the operating system at once: they outlive the end of the process.
+/// A new file, locked against a second recording. Writes go to the operating system at once: they
+/// outlive the end of the process. Errors of write() and close(): also that somebody has removed,
+/// cut, moved or replaced the file.
 class FileSink final : public LogSink {
  public:
   /// Errors: the file exists already, no such folder, no permission.
@@ -41,6 +43,7 @@ class FileSink final : public LogSink {
 
   int fd_;
   std::string path_;
+  uint64_t written_ = 0;  // [bytes]
 };
 
 }  // namespace gloam

@@ -9,6 +9,8 @@
 #include <optional>
 
 #include "base/check.h"
+#include "base/files.h"
+#include "base/own_file.h"
 #include "base/text.h"
 #include "gloam/outputs.h"
 #include "record/camera_recorder.h"
@@ -49,6 +51,8 @@ class FolderRecorder : public Recorder {
 
   Status open() {
     GLOAM_TRY_STATUS(check());
+    GLOAM_TRY_STATUS(make_folder(options_.folder));
+    GLOAM_TRY_STATUS(lock_.take(options_.folder));
     GLOAM_TRY_STATUS(prepare_run_folder(options_.folder, options_.overwrite));
     // First the file that says whose folder this is, then everything else.
     entries_ = {"cameras.json", "labels.json"};
@@ -150,7 +154,9 @@ class FolderRecorder : public Recorder {
           options_.store->write_file(options_.folder / "contact_sheet.png",
                                      run_sheet_png(info_, outcome, cameras, rows_.items())));
     }
+    failure_.report(lock_.check());
     finish_summary(outcome);
+    lock_.release();
     return failure_.status();
   }
 
@@ -281,6 +287,7 @@ class FolderRecorder : public Recorder {
   std::vector<std::string> file_names_;  // file names of the cameras
   std::vector<std::string> lidar_file_names_, sensor_file_names_;
   std::vector<std::string> entries_;  // entries of the folder, as listed in the summary
+  FolderLock lock_;
   FirstFailure failure_;
   std::optional<CsvWriter> metrics_, state_;
   std::map<std::string, CsvWriter> sensors_;  // writers by name

@@ -7,6 +7,8 @@
 #include <cerrno>
 #include <cstring>
 
+#include "base/own_file.h"
+
 namespace gloam {
 namespace {
 
@@ -20,6 +22,7 @@ class FileSink : public ByteSink {
   FileSink& operator=(const FileSink&) = delete;
 
   Status append(std::span<const uint8_t> bytes) override {
+    GLOAM_TRY_STATUS(check_not_cut(fd_, path_, end_));
     GLOAM_TRY_STATUS(write_at(end_, bytes));
     end_ += bytes.size();
     return {};
@@ -37,9 +40,11 @@ class FileSink : public ByteSink {
 
   Status close() override {
     const int fd = fd_;
+    if (fd < 0) return {};
+    const Status in_place = check_in_place(fd, path_, end_);
     fd_ = -1;
-    if (fd >= 0 && ::close(fd) != 0) return failure();
-    return {};
+    if (::close(fd) != 0) return failure();
+    return in_place;
   }
 
  private:

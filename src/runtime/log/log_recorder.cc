@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "base/log.h"
+#include "base/own_file.h"
 #include "ros/codec.h"
 #include "ros/messages/gloam_msgs.h"
 #include "runtime/log/command_text.h"
@@ -35,10 +36,7 @@ Result<std::unique_ptr<LogRecorder>> LogRecorder::start(LiveSimulation& simulati
   GLOAM_TRY(const auto wanted, wanted_topics(*table, request.topics));
   std::vector<TopicInfo> topics;
   for (const Topic* topic : wanted) topics.push_back(topic->info);
-  if (request.overwrite) {
-    std::error_code code;  // what is in the way is told of by the sink
-    std::filesystem::remove(request.file, code);
-  }
+  if (request.overwrite) GLOAM_TRY_STATUS(remove_unless_written(request.file));
   GLOAM_TRY(auto sink, FileSink::create(request.file));
   McapWriterOptions options;
   options.durable = request.durable;
