@@ -2,14 +2,33 @@
 
 #include <fmt/format.h>
 
+#include <charconv>
 #include <cmath>
 #include <iterator>
+#include <string_view>
 
 #include "base/check.h"
 
 namespace gloam {
 
-std::string csv_field(const std::string& text) {
+namespace {
+
+bool is_number(const std::string& text) {
+  const char* begin = text.data();
+  const char* end = begin + text.size();
+  if (*begin == '+') ++begin;  // std::from_chars knows no plus sign
+  double value = 0;
+  const auto [after, error] = std::from_chars(begin, end, value);
+  return error == std::errc() && after == end;
+}
+
+}  // namespace
+
+std::string csv_field(const std::string& given) {
+  // Spreadsheets run cells that begin like this as formulas, and a text may come from anybody.
+  const bool is_formula =
+      !given.empty() && std::string_view("=+-@\t\r").find(given[0]) != std::string_view::npos;
+  const std::string text = is_formula && !is_number(given) ? "'" + given : given;
   if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
   std::string out = "\"";
   for (const char c : text) {

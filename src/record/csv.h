@@ -11,7 +11,9 @@
 
 namespace gloam {
 
-/// One field, quoted if it must be.
+/// One field of text, quoted if it must be. One that a spreadsheet would run as a formula (it
+/// begins with =, +, -, @, a tab or a carriage return and is no number) gets an apostrophe in
+/// front.
 std::string csv_field(const std::string& text);
 
 class CsvWriter {

@@ -142,6 +142,12 @@ TEST(Csv, QuotesWhatNeedsIt) {
   EXPECT_EQ(csv_field("vx_mps"), "vx_mps");
   EXPECT_EQ(csv_field("a,b"), "\"a,b\"");
   EXPECT_EQ(csv_field("say \"hi\""), "\"say \"\"hi\"\"\"");
+  EXPECT_EQ(csv_field("=HYPERLINK(\"x\")"), "\"'=HYPERLINK(\"\"x\"\")\"");
+  EXPECT_EQ(csv_field("@SUM(A1)"), "'@SUM(A1)");
+  EXPECT_EQ(csv_field("-1+cmd|' /C calc'!A0"), "'-1+cmd|' /C calc'!A0");
+  EXPECT_EQ(csv_field("\t=1"), "'\t=1");
+  for (const char* number : {"-1.5", "+2", "-3e-7", "1", "-inf"})
+    EXPECT_EQ(csv_field(number), number);
 }
 
 TEST(Thumbnail, AveragesColoursAndPicksIds) {
