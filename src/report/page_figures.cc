@@ -86,6 +86,16 @@ double last_time(const ReportContent& content) {
 
 }  // namespace
 
+namespace {
+
+std::string time_text(double t) { return fmt::format("{:.3f}", t); }
+
+std::string time_label(double t) {
+  return fmt::format("<div class=\"time\">{} s</div>", time_text(t));
+}
+
+}  // namespace
+
 std::string pictures_section(const ReportContent& content) {
   if (content.strips.empty()) return {};
   std::string out = "<h2>The same instants</h2>";
@@ -94,19 +104,23 @@ std::string pictures_section(const ReportContent& content) {
         "<h3>Camera {}</h3><div class=\"strip\" style=\"grid-template-columns:minmax(70px,110px) "
         "repeat({},1fr)\"><div></div>",
         html_text(strip.camera), strip.instants.size());
-    for (const double t : strip.instants)
-      out += fmt::format("<div class=\"time\">{:.2f} s</div>", t);
+    for (const double t : strip.instants) out += time_label(t);
     for (const PictureStrip::Row& row : strip.rows) {
       const RunResults& run = content.runs[row.run];
       out += "<div class=\"row\">" + run_tag(run) + "</div>";
-      for (const StripPicture& picture : row.pictures)
-        out += picture.data_uri.empty()
-                   ? "<div class=\"gap\">none</div>"
-                   : fmt::format(
-                         "<div><img src=\"{}\" width=\"{}\" height=\"{}\" alt=\"{}, {} at "
-                         "{:.2f} s\"></div>",
-                         picture.data_uri, picture.width, picture.height, html_text(run.label),
-                         html_text(strip.camera), picture.time);
+      for (size_t i = 0; i < row.pictures.size(); ++i) {
+        const StripPicture& picture = row.pictures[i];
+        if (picture.data_uri.empty()) {
+          out += "<div class=\"gap\">none</div>";
+          continue;
+        }
+        const std::string own = time_label(picture.time);
+        out += fmt::format(
+            "<div><img src=\"{}\" width=\"{}\" height=\"{}\" alt=\"{}, {} at {} s\">{}</div>",
+            picture.data_uri, picture.width, picture.height, html_text(run.label),
+            html_text(strip.camera), time_text(picture.time),
+            own == time_label(strip.instants[i]) ? "" : own);
+      }
     }
     out += "</div>";
   }

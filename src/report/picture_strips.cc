@@ -25,18 +25,13 @@ class CameraPictures {
     const fs::path folder = run.folder / camera.folder,
                    video = run.folder / (camera.folder + ".mp4");
     std::error_code code;
-    if (const auto poses = read_metric_table(folder / "poses.csv"); poses.ok())
-      if (const auto* times = poses->find("time_s")) out.times_ = *times;
+    out.read_poses(folder / "poses.csv");
     if (fs::exists(video, code)) {
       GLOAM_TRY(out.video_, VideoReader::open(video));
-      const auto& samples = out.video_->index().samples;
-      if (out.times_.size() < samples.size()) {
-        out.times_.clear();
-        for (const auto& sample : samples) out.times_.push_back(sample.time);
-      }
-      out.times_.resize(samples.size());
+      out.take_samples(out.video_->index().samples);
     } else if (fs::is_directory(folder / "rgb", code)) {
       out.folder_ = folder / "rgb";
+      out.times_.resize(std::min(out.times_.size(), out.frames_.size()));
     } else {
       out.times_.clear();
     }
@@ -47,15 +42,41 @@ class CameraPictures {
 
   Result<Image8> picture(size_t index) const {
     if (video_) return video_->decode(index);
-    GLOAM_TRY(Image8 image, read_image(folder_ / fmt::format("{:06}.png", index)));
+    GLOAM_TRY(Image8 image, read_image(folder_ / fmt::format("{:06}.png", frames_[index])));
     if (image.channels != 3)
       return Error{ErrorKind::kInput, "is no RGB picture", {folder_.string(), 0, 0}};
     return image;
   }
 
  private:
+  // Rows up to the first that is no frame's.
+  void read_poses(const fs::path& file) {
+    const auto poses = read_metric_table(file);
+    const auto* times = poses.ok() ? poses->find("time_s") : nullptr;
+    const auto* frames = poses.ok() ? poses->find("frame") : nullptr;
+    if (times == nullptr || frames == nullptr) return;
+    constexpr double kMostFrames = 1e9;
+    for (size_t i = 0; i < std::min(times->size(), frames->size()); ++i) {
+      const double frame = (*frames)[i];
+      if (!(frame >= 0 && frame < kMostFrames) || !std::isfinite((*times)[i])) return;
+      frames_.push_back(static_cast<int64_t>(frame));
+      times_.push_back((*times)[i]);
+    }
+  }
+  // A video that was cut may have pictures whose poses are missing; those count on from the first
+  // one's time.
+  void take_samples(const std::vector<VideoIndex::Sample>& samples) {
+    const double first = times_.empty() ? 0 : times_.front();
+    for (size_t i = times_.size(); i < samples.size(); ++i)
+      times_.push_back(first + samples[i].time);
+    times_.resize(samples.size());
+  }
+
   std::optional<VideoReader> video_;
   fs::path folder_;
+  // Of each picture. Numbers of frames have gaps where frames were dropped, and begin late where a
+  // run goes on from a log.
+  std::vector<int64_t> frames_;
   std::vector<double> times_;  // [s]
 };
 
@@ -104,9 +125,14 @@ std::vector<double> common_instants(const std::vector<CameraSource>& sources, in
   // Runs without a common time are shown at those of the longest.
   if (high < low)
     for (const CameraSource& source : sources) high = std::max(low, source.pictures.times().back());
+  // Instants are those at which the first run has pictures.
+  const std::vector<double>& taken = sources.front().pictures.times();
   std::vector<double> instants;
-  for (int i = 0; i < count; ++i)
-    instants.push_back(count == 1 ? high : low + (high - low) * i / (count - 1));
+  for (int i = 0; i < count; ++i) {
+    const double wanted = count == 1 ? high : low + (high - low) * i / (count - 1);
+    const double t = taken[nearest_time(taken, wanted)];
+    if (instants.empty() || instants.back() != t) instants.push_back(t);
+  }
   return instants;
 }
 

@@ -17,7 +17,7 @@ struct StripPicture {
 };
 struct PictureStrip {
   std::string camera;
-  std::vector<double> instants;  ///< asked for [s]
+  std::vector<double> instants;  ///< of the first row's pictures [s]
   struct Row {
     size_t run = 0;
     std::vector<StripPicture> pictures;  ///< (instants)
