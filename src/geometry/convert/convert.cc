@@ -11,6 +11,7 @@
 #include "geometry/convert/decompose.h"
 #include "geometry/convert/fit.h"
 #include "geometry/convert/hull.h"
+#include "geometry/convert/pieces.h"
 #include "geometry/convert/room.h"
 #include "geometry/mesh/weld.h"
 
@@ -224,15 +225,33 @@ class Converter {
       out_.notes.push_back(
           fmt::format("has {} triangles: its parts are those of a coarser one of {} at most",
                       out_.mesh.triangle_count(), kMostDecomposed));
-    GLOAM_TRY(
-        const std::vector<TriangleMesh> parts,
-        decompose(out_.mesh, {options_.concavity, options_.max_hulls, options_.is_cancelled}));
+    GLOAM_TRY(const std::vector<TriangleMesh> parts, find_parts());
     for (const TriangleMesh& part : parts) {
       MeshCollider collider = hull_of(part.positions);
       // A part that is thin beside the whole would have no volume for MuJoCo.
       if (!collider.hull.indices.empty()) GLOAM_TRY_STATUS(add(std::move(collider)));
     }
     return {};
+  }
+
+  // Pieces that are convex are parts as they are. CoACD gets the others one by one, each with its
+  // share of the hulls: where pieces cross each other its search would take minutes.
+  Result<std::vector<TriangleMesh>> find_parts() {
+    constexpr size_t kMostPieces = 256;
+    Pieces pieces = pieces_of(out_.mesh, options_.concavity);
+    if (!pieces.open.indices.empty()) pieces.closed.push_back(std::move(pieces.open));
+    if (pieces.convex.size() + pieces.closed.size() > kMostPieces)
+      return decompose(out_.mesh, {options_.concavity, options_.max_hulls, options_.is_cancelled});
+    std::vector<TriangleMesh> parts = std::move(pieces.convex);
+    const int left = options_.max_hulls - static_cast<int>(parts.size());
+    const int share = left / std::max(1, static_cast<int>(pieces.closed.size()));
+    for (const TriangleMesh& piece : pieces.closed) {
+      GLOAM_TRY_STATUS(go_on());
+      GLOAM_TRY(std::vector<TriangleMesh> found,
+                decompose(piece, {options_.concavity, std::max(1, share), options_.is_cancelled}));
+      for (TriangleMesh& part : found) parts.push_back(std::move(part));
+    }
+    return merge_hulls(std::move(parts), static_cast<size_t>(options_.max_hulls));
   }
 
   Status add(MeshCollider collider) {

@@ -69,8 +69,7 @@ Progress CompileProgress::state(bool is_all) const {
     const double by_clock = expected_share(passed, expected_);
     if (by_clock > share) {
       share = by_clock;
-      constexpr double kLate = 0.25;  // least remaining time of a late stage, over the time passed
-      out.left = std::max(expected_ - passed, kLate * passed);
+      out.left = passed < expected_ ? expected_ - passed : -1;  // a late stage: nobody knows
     }
   }
   out.done = std::min((before_ + weight_ * share) / weights_, 1.0);

@@ -103,7 +103,8 @@ TEST_F(CompileProgressTest, MovesOnWhenAStageTakesLongerThanExpected) {
     EXPECT_GT(told[i].done, told[i - 1].done) << i;
     if (i + 1 < told.size()) {
       EXPECT_LT(told[i].done, 1) << i;
-      EXPECT_GT(told[i].left, 0) << "an estimate, at " << i;
+      EXPECT_EQ(told[i].left > 0, told[i].seconds < 0.2)
+          << "nobody knows when it is late, at " << i;
     }
   }
 }
