@@ -78,8 +78,10 @@ def checks():
         yield check("the program starts", result.returncode == 0, result.stdout.split("\n")[0] or why, f"it says: {why}; rebuild with ./gloam setup")
     cache = Path(os.environ.get("GLOAM_CACHE") or Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "gloam")
     try:
-        cache.mkdir(parents=True, exist_ok=True)
-        with tempfile.TemporaryFile(dir=cache):
+        folder = cache  # which need not be there yet: this command makes nothing
+        while not folder.exists() and folder != folder.parent:
+            folder = folder.parent
+        with tempfile.TemporaryFile(dir=folder):
             pass
         yield check("cache folder", True, "writable")
     except OSError as error:
