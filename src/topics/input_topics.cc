@@ -8,7 +8,7 @@
 #include "base/text.h"
 #include "ros/messages/sensor_msgs.h"
 #include "ros/messages/trajectory_msgs.h"
-#include "topics/input_echoes.h"
+#include "ros/trajectory_check.h"
 #include "topics/model_frames.h"
 #include "topics/ros_values.h"
 #include "topics/topic_table.h"
@@ -79,6 +79,7 @@ InputDecoder joint_command(RobotJoints joints) {
   return [joints = std::move(joints)](InputBytes bytes, const Snapshot&, double) -> Commands {
     GLOAM_TRY(const auto state, decode<sensor_msgs::JointState>(bytes));
     GLOAM_TRY_STATUS(check_lengths("joint_command", state.name.size(), state.position.size()));
+    if (!state.name.empty()) GLOAM_TRY_STATUS(check_joint_names(state.name));
     std::vector<Command> commands;
     for (size_t i = 0; i < state.name.size(); ++i) {
       GLOAM_TRY(const Joint joint, joints.find(state.name[i]));
@@ -102,7 +103,7 @@ InputDecoder position_commands(RobotJoints joints) {
 
 /// Seconds between the goals that a trajectory is cut into.
 constexpr double kGoalInterval = 0.02;
-constexpr double kLongestTrajectory = 60;  // [s]
+constexpr int32_t kLongestTrajectory = 60;  // [s]
 
 // One joint's goals along the straight lines between the points, from where it is now.
 void add_goals(const trajectory_msgs::JointTrajectory& way, size_t column, Joint joint,
@@ -127,16 +128,10 @@ InputDecoder joint_trajectory(RobotJoints joints) {
   return [joints = std::move(joints)](InputBytes bytes, const Snapshot& now,
                                       double timestep) -> Commands {
     GLOAM_TRY(const auto way, decode<trajectory_msgs::JointTrajectory>(bytes));
-    double before = 0;
-    for (const auto& point : way.points) {
-      GLOAM_TRY_STATUS(
-          check_lengths("joint_trajectory", way.joint_names.size(), point.positions.size()));
-      const double time = point.time_from_start.sec + 1e-9 * point.time_from_start.nanosec;
-      if (time < before || time > kLongestTrajectory)
-        return Error{ErrorKind::kInput,
-                     "joint_trajectory: times must not go back, nor beyond 60 s"};
-      before = time;
-    }
+    GLOAM_TRY_STATUS(check_joint_names(way.joint_names));
+    GLOAM_TRY_STATUS(check_points(way));
+    if (way.points.back().time_from_start.sec >= kLongestTrajectory)
+      return Error{ErrorKind::kInput, "joint_trajectory: it is longer than 60 s"};
     std::vector<Command> commands;
     for (size_t i = 0; i < way.joint_names.size(); ++i) {
       GLOAM_TRY(const Joint joint, joints.find(way.joint_names[i]));

@@ -234,12 +234,29 @@ TEST_F(Ros2Actions, ANewTrajectoryReplacesTheOld) {
   EXPECT_EQ(outcome(*client, 3).status, GoalStatus::STATUS_CANCELED);
 }
 
+TEST_F(Ros2Actions, JointsThatAreWrongAbortTheirGoalAndNoOther) {
+  const auto client = follower();
+  ASSERT_TRUE(send(*client, 1, bend(0.2, 0.5)));
+  const std::vector<std::vector<std::string>> wrong = {
+      {"elbow", "elbow"}, {"elbow", "arm/elbow"}, {"knee"}, {""}, {}};
+  uint8_t id = 2;
+  for (const auto& names : wrong) {
+    auto goal = bend(1, 1);
+    goal.trajectory.joint_names = names;
+    goal.trajectory.points[0].positions.assign(names.size(), 0.1);
+    ASSERT_TRUE(send(*client, id, goal));
+    const auto end = outcome(*client, id++);
+    EXPECT_EQ(end.status, GoalStatus::STATUS_ABORTED);
+    EXPECT_EQ(end.result.error_code, Fjt::INVALID_JOINTS);
+    EXPECT_FALSE(end.result.error_string.empty());
+  }
+  ASSERT_TRUE(op().play().ok());
+  EXPECT_EQ(outcome(*client, 1).status, GoalStatus::STATUS_SUCCEEDED) << "it went on";
+}
+
 TEST_F(Ros2Actions, BadTrajectoriesAreRefused) {
   const auto client = follower();
   ca::FollowJointTrajectory_Goal goal = bend(1, 1);
-  goal.trajectory.joint_names = {"knee"};
-  EXPECT_FALSE(send(*client, 1, goal));
-  goal = bend(1, 1);
   goal.trajectory.points[0].positions.clear();
   EXPECT_FALSE(send(*client, 2, goal));
   goal = bend(std::nan(""), 1);
@@ -249,6 +266,18 @@ TEST_F(Ros2Actions, BadTrajectoriesAreRefused) {
   EXPECT_FALSE(send(*client, 4, goal));
   goal = bend(1, 1);
   goal.trajectory.points.clear();
+  EXPECT_FALSE(send(*client, 5, goal));
+  goal = bend(1, 1);
+  goal.trajectory.points[0].velocities = {1, 2};
+  EXPECT_FALSE(send(*client, 5, goal));
+  goal = bend(1, 1);
+  goal.trajectory.points[0].accelerations = {1, 2};
+  EXPECT_FALSE(send(*client, 5, goal));
+  goal = bend(1, 1);
+  goal.trajectory.points[0].effort = {std::nan("")};
+  EXPECT_FALSE(send(*client, 5, goal));
+  goal = bend(1, 1);
+  goal.trajectory.points[0].time_from_start.sec = -1;
   EXPECT_FALSE(send(*client, 5, goal));
   // A robot that somebody else drives is theirs.
   const auto lease = simulation_->claim(simulation_->world().find_robot("arm").value());

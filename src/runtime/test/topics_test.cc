@@ -394,6 +394,41 @@ TEST_F(TopicInputs, TrajectoriesAreCutIntoGoalsAtTheirTimes) {
   EXPECT_FALSE(publish("/cart/joint_trajectory", way).ok());  // back in time
 }
 
+TEST_F(TopicInputs, TrajectoriesAndCommandsOfJointsAreChecked) {
+  trajectory_msgs::JointTrajectory good;
+  good.joint_names = {"hinge"};
+  good.points.resize(1);
+  good.points[0].positions = {0.2};
+  good.points[0].time_from_start.sec = 1;
+  const char* const name = "/cart/joint_trajectory";
+  const auto refused = [&](auto change) {
+    trajectory_msgs::JointTrajectory way = good;
+    change(way);
+    return !publish(name, way).ok();
+  };
+  using Way = trajectory_msgs::JointTrajectory;
+  EXPECT_TRUE(refused([](Way& way) { way.joint_names = {"hinge", "hinge"}; }));
+  EXPECT_TRUE(refused([](Way& way) {
+    way.joint_names = {"hinge", "hinge"};
+    way.points[0].positions = {0.1, 0.2};
+  }));
+  EXPECT_TRUE(refused([](Way& way) { way.joint_names = {"knee"}; }));
+  EXPECT_TRUE(refused([](Way& way) { way.joint_names = {""}; }));
+  EXPECT_TRUE(refused([](Way& way) { way.joint_names.clear(); }));
+  EXPECT_TRUE(refused([](Way& way) { way.points.clear(); }));
+  EXPECT_TRUE(refused([](Way& way) { way.points[0].positions = {std::nan("")}; }));
+  EXPECT_TRUE(refused([](Way& way) { way.points[0].velocities = {1, 2}; }));
+  EXPECT_TRUE(refused([](Way& way) { way.points[0].accelerations = {1, 2}; }));
+  EXPECT_TRUE(refused([](Way& way) { way.points[0].time_from_start.sec = -1; }));
+  EXPECT_TRUE(refused([](Way& way) { way.points.push_back(way.points[0]); }));
+  EXPECT_TRUE(refused([](Way& way) { way.points[0].time_from_start.sec = 61; }));
+  EXPECT_TRUE(publish(name, good).ok());
+  sensor_msgs::JointState twice;
+  twice.name = {"hinge", "hinge"};
+  twice.position = {0.1, 0.2};
+  EXPECT_FALSE(publish("/cart/joint_command", twice).ok());
+}
+
 TEST_F(TopicInputs, EveryOtherInputIsHeard) {
   EXPECT_TRUE(publish("/cart/cmd_vel", geometry_msgs::Twist{{0.5, 0, 0}, {0, 0, 0.1}}).ok());
   std_msgs::Float64MultiArray controls;

@@ -74,9 +74,21 @@ Result<std::vector<uint8_t>> ActionServer::send_goal(std::span<const uint8_t> by
   AnySendGoalResponse response;
   response.stamp = ros_time_of(options_.clock());
   const std::lock_guard lock(mutex_);
-  const bool refused = !request.run || stopping_ || goals_.contains(request.id) ||
-                       (options_.policy == GoalPolicy::kRefuse && is_busy());
-  if (!refused) {
+  const bool has_ended = request.end.has_value();
+  const bool refused = (!request.run && !has_ended) || stopping_ || goals_.contains(request.id) ||
+                       (!has_ended && options_.policy == GoalPolicy::kRefuse && is_busy());
+  if (!refused && has_ended) {
+    const auto goal = std::make_shared<Goal>();
+    goal->stamp = response.stamp;
+    goal->status = request.end->status;
+    goal->response = request.end->response;
+    goal->request.id = request.id;
+    goals_.emplace(request.id, goal);
+    ended_.push_back(request.id);
+    response.accepted = true;
+    tell_status();
+    forget_old();
+  } else if (!refused) {
     for (const auto& [id, goal] : goals_) {
       if (is_end(goal->status)) continue;
       goal->cancelled = true;

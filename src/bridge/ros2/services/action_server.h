@@ -7,6 +7,7 @@
 #include <deque>
 #include <functional>
 #include <map>
+#include <optional>
 #include <mutex>
 #include <thread>
 
@@ -37,7 +38,9 @@ struct GoalEnd {
 /// A goal that was read.
 struct GoalRequest {
   GoalId id = {};
-  std::function<GoalEnd(GoalContext&)> run = {};  ///< empty = it is refused
+  std::function<GoalEnd(GoalContext&)> run = {};  ///< empty, without an end too: it is refused
+  /// It is accepted and has ended so at once; goals that run go on.
+  std::optional<GoalEnd> end = {};
 };
 
 /// Rule for a goal that comes while another runs.

@@ -1,18 +1,12 @@
 #include "bridge/ros2/services/joint_way.h"
 
 #include <algorithm>
-#include <cmath>
+#include <utility>
+
+#include "ros/trajectory_check.h"
 
 namespace gloam::bridge {
 namespace {
-
-constexpr size_t kMostPoints = 100'000;
-
-Error bad_way(std::string message) { return Error{ErrorKind::kInput, std::move(message)}; }
-
-bool all_finite(const std::vector<double>& values) {
-  return std::ranges::all_of(values, [](double v) { return std::isfinite(v); });
-}
 
 /// One end of a piece: its time, position and velocity.
 struct End {
@@ -31,25 +25,12 @@ std::pair<double, double> on_cubic(const End& a, const End& b, double time) {
 }  // namespace
 
 Result<JointWay> JointWay::make(const trajectory_msgs::JointTrajectory& trajectory) {
-  if (trajectory.points.empty()) return bad_way("the trajectory has no points");
-  if (trajectory.points.size() > kMostPoints) return bad_way("the trajectory has too many points");
-  const size_t joints = trajectory.joint_names.size();
+  GLOAM_TRY_STATUS(check_points(trajectory));
   JointWay way;
-  double before = 0;
   for (const auto& point : trajectory.points) {
-    const double time = point.time_from_start.sec + 1e-9 * point.time_from_start.nanosec;
-    if (time < before || (!way.times_.empty() && time <= before))
-      return bad_way("the times of the points do not increase");
-    if (point.positions.size() != joints)
-      return bad_way("a point has not one position for each joint");
-    if (!point.velocities.empty() && point.velocities.size() != joints)
-      return bad_way("a point has neither no velocities nor one for each joint");
-    if (!all_finite(point.positions) || !all_finite(point.velocities))
-      return bad_way("a number of the trajectory is not finite");
-    way.times_.push_back(time);
+    way.times_.push_back(point.time_from_start.sec + 1e-9 * point.time_from_start.nanosec);
     way.positions_.push_back(point.positions);
     way.velocities_.push_back(point.velocities);
-    before = time;
   }
   return way;
 }

@@ -16,7 +16,7 @@ struct JointWayPoint {
 
 class JointWay {
  public:
-  /// Errors: no points, times that go back, numbers too few, too many or not finite.
+  /// Errors: those of check_points().
   static Result<JointWay> make(const trajectory_msgs::JointTrajectory& trajectory);
 
   double end() const { return times_.back(); }  ///< [s]

@@ -65,11 +65,17 @@ Ros2Action trajectory_action(Simulation& simulation, const std::string& robot, i
     GLOAM_TRY(auto request, decode<fjt::FollowJointTrajectory_SendGoal_Request>(bytes));
     GoalRequest goal{.id = request.goal_id.uuid};
     Result<JointWay> way = JointWay::make(request.goal.trajectory);
-    const Snapshot now = simulation.latest();
-    if (!way.ok() || !request.goal.multi_dof_trajectory.points.empty() ||
-        request.goal.trajectory.joint_names.empty() ||
-        !find_joints(now, robot, request.goal.trajectory.joint_names).ok())
+    if (!way.ok() || !request.goal.multi_dof_trajectory.points.empty())
       return goal;  // refused, as joint_trajectory_controller does
+    // Accepted and aborted, so that its client learns which joint is wrong.
+    if (const auto joints =
+            find_joints(simulation.latest(), robot, request.goal.trajectory.joint_names);
+        !joints.ok()) {
+      goal.end = trajectory_end(action_msgs::GoalStatus::STATUS_ABORTED,
+                                fjt::FollowJointTrajectory_Result::INVALID_JOINTS,
+                                joints.error().to_string());
+      return goal;
+    }
     const auto run = std::make_shared<TrajectoryRun>(simulation, robot, interfaces, request.goal,
                                                      std::move(*way));
     goal.run = [run](GoalContext& context) { return run->run(context); };

@@ -7,6 +7,7 @@
 #include "bridge/ros2/services/snapshot_inbox.h"
 #include "ros/codec.h"
 #include "ros/messages/control_msgs_5.h"
+#include "ros/trajectory_check.h"
 
 namespace gloam::bridge {
 namespace {
@@ -39,6 +40,7 @@ Result<std::vector<Joint>> find_joints(const Snapshot& snapshot, const std::stri
                                        const std::vector<std::string>& names) {
   const World world = snapshot.world();
   GLOAM_TRY_STATUS(world.find_robot(robot));
+  GLOAM_TRY_STATUS(check_joint_names(names));
   std::vector<Joint> joints;
   for (const std::string& name : names) {
     Result<Joint> joint = world.find_joint(robot + "/" + name);
@@ -46,6 +48,8 @@ Result<std::vector<Joint>> find_joints(const Snapshot& snapshot, const std::stri
     if (!joint.ok()) return joint.error();
     if (snapshot[*joint].qpos.size() != 1)
       return Error{ErrorKind::kInput, "joint '" + name + "' is no hinge or slide"};
+    if (std::ranges::any_of(joints, [&](const Joint& other) { return other.id == joint->id; }))
+      return Error{ErrorKind::kInput, "joint '" + name + "' is there twice"};
     joints.push_back(*joint);
   }
   return joints;
