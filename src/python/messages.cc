@@ -4,6 +4,7 @@
 
 #include "gloam/topics.h"
 #include "ros/cdr.h"
+#include "ros/default_value.h"
 #include "ros/message_schema.h"
 #include "ros/message_walk.h"
 
@@ -83,36 +84,18 @@ void encode_element(const MessageSchema& schema, const SchemaField& field, nb::h
   });
 }
 
-// The zero of a field that a message does not name.
-void encode_nothing(const MessageSchema& schema, const SchemaField& field, CdrWriter& writer) {
-  if (is_text(field)) return writer.write_string("");
-  if (field.type.kind == FieldKind::kMessage)
-    return encode_message(schema, field.part, nb::dict(), writer);
-  with_primitive(field.type.kind, [&]<class T>(std::type_identity<T>) {
-    writer.write(T{});
-    return true;
-  });
-}
-
 void encode_field(const MessageSchema& schema, const SchemaField& field, nb::handle from,
                   CdrWriter& writer) {
-  const bool is_given = from.is_valid() && !from.is_none();
-  if (field.type.array == ArrayKind::kNone)
-    return is_given ? encode_element(schema, field, from, writer)
-                    : encode_nothing(schema, field, writer);
-  const size_t count = is_given ? nb::len(from) : 0;
+  if (!from.is_valid() || from.is_none()) return write_default(schema, field, &writer);
+  if (field.type.array == ArrayKind::kNone) return encode_element(schema, field, from, writer);
+  const size_t count = nb::len(from);
   const size_t bound = field.type.array_size;
   if (field.type.array == ArrayKind::kFixed) {
-    if (is_given && count != bound) {
+    if (count != bound) {
       const std::string text = field.name + ": " + std::to_string(bound) + " elements are expected";
       throw nb::value_error(text.c_str());
     }
-    for (size_t i = 0; i < bound; ++i) {
-      if (is_given)
-        encode_element(schema, field, from[i], writer);
-      else
-        encode_nothing(schema, field, writer);
-    }
+    for (size_t i = 0; i < bound; ++i) encode_element(schema, field, from[i], writer);
     return;
   }
   writer.write_count(count);

@@ -74,7 +74,7 @@ class DefinitionParser {
   }
   Status read_header(std::string_view line);
   Status read_member(std::string_view line);
-  Status add_field(FieldType type, std::string_view name);
+  Status add_field(FieldType type, std::string_view name, std::string_view value);
   Result<FieldType> read_type(std::string_view text) const;
   Result<size_t> read_size(std::string_view digits) const;
   Error error(std::string message, std::string hint = "") const {
@@ -130,7 +130,7 @@ Status DefinitionParser::read_member(std::string_view line) {
   }
   GLOAM_TRY(FieldType type, read_type(line.substr(0, type_end)));
   std::string_view value = without_spaces(rest.substr(name_end));
-  if (!value.starts_with('=')) return add_field(std::move(type), name);  // a default is not kept
+  if (!value.starts_with('=')) return add_field(std::move(type), name, value);
   value.remove_prefix(1);
   if (type.kind == FieldKind::kMessage || type.array != ArrayKind::kNone) {
     return error(fmt::format("constant '{}' is of no primitive type", name));
@@ -145,13 +145,17 @@ Status DefinitionParser::read_member(std::string_view line) {
   return {};
 }
 
-Status DefinitionParser::add_field(FieldType type, std::string_view name) {
+/// `value`: its default, with a remark perhaps.
+Status DefinitionParser::add_field(FieldType type, std::string_view name, std::string_view value) {
   std::vector<FieldDescription>& fields = type_.messages.back().fields;
   for (const FieldDescription& field : fields) {
     if (field.name == name) return error(fmt::format("field '{}' is there twice", name));
   }
   if (fields.size() == kMostFields) return error(fmt::format("more than {} fields", kMostFields));
-  fields.push_back({std::string(name), std::move(type), line_});
+  const bool is_text = type.kind == FieldKind::kString;
+  const size_t end = is_text && !value.starts_with('#') ? std::string_view::npos : value.find('#');
+  fields.push_back({std::string(name), std::move(type),
+                    std::string(without_spaces(value.substr(0, end))), line_});
   return {};
 }
 

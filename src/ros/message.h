@@ -41,6 +41,10 @@
   static constexpr std::string_view kConstantType = #ros_type; \
   static constexpr std::string_view kConstantTexts = #__VA_ARGS__;
 
+/// Defaults that a message's .msg file gives to fields, where they are not zero or empty:
+/// GLOAM_DEFAULTS(w = 1).
+#define GLOAM_DEFAULTS(...) static constexpr std::string_view kDefaultTexts = #__VA_ARGS__;
+
 namespace gloam {
 
 template <class T>

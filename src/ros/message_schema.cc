@@ -83,7 +83,7 @@ Status MessageSchema::look_up_parts() {
         part = found->second;
         field.type.message = found->first;
       }
-      fields.push_back({field.name, field.type, part});
+      fields.push_back({field.name, field.type, part, field.default_value});
     }
   }
   return {};

@@ -15,8 +15,9 @@ class MessageSchema {
   struct Field {
     std::string name;
     FieldType type;
-    size_t part = 0;        ///< index of the message of kMessage
-    size_t least_size = 0;  ///< fewest bytes of an element on the wire, at least 1
+    size_t part = 0;                 ///< index of the message of kMessage
+    std::string default_value = {};  ///< as of FieldDescription
+    size_t least_size = 0;           ///< fewest bytes of an element on the wire, at least 1
   };
 
   /// Out of a definition as text, see parse_ros2msg. Errors besides its: a part without definition,

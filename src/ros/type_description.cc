@@ -44,7 +44,8 @@ std::string message_text(const MessageDescription& message) {
     text += fmt::format("{} {}={}\n", constant.type, constant.name, constant.value);
   }
   for (const FieldDescription& field : message.fields) {
-    text += fmt::format("{} {}\n", type_text(field.type), field.name);
+    text += fmt::format("{} {}", type_text(field.type), field.name);
+    text += field.default_value.empty() ? "\n" : " " + field.default_value + "\n";
   }
   return text;
 }
@@ -166,6 +167,13 @@ std::vector<ConstantDescription> parse_constants(std::string_view type, std::str
                          std::string(trimmed(entry.substr(equals + 1)))});
   }
   return constants;
+}
+
+void add_defaults(std::string_view list, std::vector<FieldDescription>* fields) {
+  for (const ConstantDescription& one : parse_constants({}, list)) {
+    const auto field = std::ranges::find(*fields, one.name, &FieldDescription::name);
+    if (field != fields->end()) field->default_value = one.value;
+  }
 }
 
 }  // namespace gloam

@@ -42,7 +42,8 @@ struct FieldType {
 struct FieldDescription {
   std::string name;
   FieldType type;
-  int line = 0;  ///< in the text it was read from; 0 = from a struct
+  std::string default_value = {};  ///< as in a .msg file: "1", "[1, 2]"; "" = zero or empty
+  int line = 0;                    ///< in the text it was read from; 0 = from a struct
 };
 
 struct ConstantDescription {
@@ -102,6 +103,8 @@ constexpr FieldKind field_kind() {
 
 /// Constants out of "ULTRASOUND = 0, INFRARED = 1".
 std::vector<ConstantDescription> parse_constants(std::string_view type, std::string_view list);
+/// Gives fields their defaults out of "x = 0, w = 1".
+void add_defaults(std::string_view list, std::vector<FieldDescription>* fields);
 
 template <class F>
 FieldDescription describe_field(std::string_view name) {
@@ -130,6 +133,7 @@ void add_description(TypeDescription* type) {
   if constexpr (requires { T::kConstantTexts; }) {
     message.constants = parse_constants(T::kConstantType, T::kConstantTexts);
   }
+  if constexpr (requires { T::kDefaultTexts; }) add_defaults(T::kDefaultTexts, &message.fields);
   type->messages.push_back(std::move(message));
   for_each_field_type<T>([&]<class F>(std::type_identity<F>, std::string_view) {
     using Element = typename FieldTraits<F>::Element;

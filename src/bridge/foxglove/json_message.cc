@@ -5,6 +5,7 @@
 #include <string>
 
 #include "ros/cdr.h"
+#include "ros/default_value.h"
 #include "ros/message_walk.h"
 
 namespace gloam::bridge::foxglove {
@@ -18,24 +19,25 @@ class JsonEncoder {
   JsonEncoder(const MessageSchema& schema, std::vector<uint8_t>* out)
       : schema_(schema), writer_(out) {}
 
-  /// `object` == nullptr: all zero.
-  Status put_message(size_t part, const json* object) {
-    if (object != nullptr && !object->is_object()) return wrong("must be an object");
+  Status put_message(size_t part, const json& object) {
+    if (!object.is_object()) return wrong("must be an object");
     const auto& fields = schema_.fields(part);
     if (fields.empty()) writer_.write(uint8_t{0});
     size_t known = 0;
     for (const Field& field : fields) {
-      const json* value = nullptr;
-      if (object != nullptr)
-        if (const auto found = object->find(field.name); found != object->end()) value = &*found;
-      known += value != nullptr ? 1 : 0;
+      const auto value = object.find(field.name);
+      if (value == object.end()) {
+        write_default(schema_, field, &writer_);
+        continue;
+      }
+      ++known;
       const size_t length = place_.size();
       place_ += "." + field.name;
-      GLOAM_TRY_STATUS(put_field(field, value));
+      GLOAM_TRY_STATUS(put_field(field, *value));
       place_.resize(length);
     }
-    if (object != nullptr && known != object->size())
-      for (const auto& [key, value] : object->items())
+    if (known != object.size())
+      for (const auto& [key, value] : object.items())
         if (std::ranges::none_of(fields, [&](const Field& f) { return f.name == key; }))
           return wrong("has no field '" + key + "'");
     return {};
@@ -47,25 +49,20 @@ class JsonEncoder {
     return {ErrorKind::kInput, place + " " + what};
   }
 
-  Status put_field(const Field& field, const json* value) {
+  Status put_field(const Field& field, const json& value) {
     if (field.type.array == ArrayKind::kNone) return put_element(field, value);
-    if (value != nullptr && !value->is_array()) return wrong("must be an array");
-    const size_t count = value != nullptr ? value->size() : 0, size = field.type.array_size;
-    if (field.type.array == ArrayKind::kFixed) {
-      if (value != nullptr && count != size)
-        return wrong("must have " + std::to_string(size) + " elements");
-      for (size_t i = 0; i < size; ++i)
-        GLOAM_TRY_STATUS(put_element(field, value != nullptr ? &(*value)[i] : nullptr));
-      return {};
-    }
+    if (!value.is_array()) return wrong("must be an array");
+    const size_t count = value.size(), size = field.type.array_size;
+    if (field.type.array == ArrayKind::kFixed && count != size)
+      return wrong("must have " + std::to_string(size) + " elements");
     if (field.type.array == ArrayKind::kBounded && count > size)
       return wrong("must have at most " + std::to_string(size) + " elements");
-    writer_.write_count(count);
-    for (size_t i = 0; i < count; ++i) GLOAM_TRY_STATUS(put_element(field, &(*value)[i]));
+    if (field.type.array != ArrayKind::kFixed) writer_.write_count(count);
+    for (const json& element : value) GLOAM_TRY_STATUS(put_element(field, element));
     return {};
   }
 
-  Status put_element(const Field& field, const json* value) {
+  Status put_element(const Field& field, const json& value) {
     if (field.type.kind == FieldKind::kMessage) return put_message(field.part, value);
     if (field.type.kind == FieldKind::kString) return put_string(field, value);
     Status status;
@@ -76,13 +73,9 @@ class JsonEncoder {
     return status;
   }
 
-  Status put_string(const Field& field, const json* value) {
-    if (value == nullptr) {
-      writer_.write_string("");
-      return {};
-    }
-    if (!value->is_string()) return wrong("must be text");
-    const auto& text = value->get_ref<const std::string&>();
+  Status put_string(const Field& field, const json& value) {
+    if (!value.is_string()) return wrong("must be text");
+    const auto& text = value.get_ref<const std::string&>();
     if (field.type.string_bound > 0 && text.size() > field.type.string_bound)
       return wrong("is too long");
     writer_.write_string(text);
@@ -90,24 +83,20 @@ class JsonEncoder {
   }
 
   template <class T>
-  Status put_number(const json* value) {
-    if (value == nullptr) {
-      writer_.write(T{});
-      return {};
-    }
+  Status put_number(const json& value) {
     if constexpr (std::same_as<T, bool>) {
-      if (!value->is_boolean()) return wrong("must be true or false");
-      writer_.write(value->get<bool>());
+      if (!value.is_boolean()) return wrong("must be true or false");
+      writer_.write(value.get<bool>());
     } else if constexpr (std::floating_point<T>) {
-      if (!value->is_number()) return wrong("must be a number");
-      writer_.write(static_cast<T>(value->get<double>()));
+      if (!value.is_number()) return wrong("must be a number");
+      writer_.write(static_cast<T>(value.get<double>()));
     } else {
       // JavaScript's whole numbers are doubles; those of 64 bits come exactly as integers.
-      if (value->is_number_unsigned() && std::in_range<T>(value->get<uint64_t>())) {
-        writer_.write(static_cast<T>(value->get<uint64_t>()));
-      } else if (value->is_number_integer() && !value->is_number_unsigned() &&
-                 std::in_range<T>(value->get<int64_t>())) {
-        writer_.write(static_cast<T>(value->get<int64_t>()));
+      if (value.is_number_unsigned() && std::in_range<T>(value.get<uint64_t>())) {
+        writer_.write(static_cast<T>(value.get<uint64_t>()));
+      } else if (value.is_number_integer() && !value.is_number_unsigned() &&
+                 std::in_range<T>(value.get<int64_t>())) {
+        writer_.write(static_cast<T>(value.get<int64_t>()));
       } else {
         return wrong("must be a whole number of its range");
       }
@@ -173,7 +162,7 @@ class JsonDecoder {
 Result<std::vector<uint8_t>> cdr_from_json(const MessageSchema& schema, const json& object) {
   std::vector<uint8_t> bytes;
   JsonEncoder encoder(schema, &bytes);
-  GLOAM_TRY_STATUS(encoder.put_message(0, &object));
+  GLOAM_TRY_STATUS(encoder.put_message(0, object));
   return bytes;
 }
 

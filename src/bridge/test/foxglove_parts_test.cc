@@ -147,6 +147,38 @@ TEST(FoxgloveJson, GoesThereAndBack) {
   EXPECT_FALSE(json_from_cdr(schema<sensor_msgs::JointState>(), std::span(bytes).first(20)).ok());
 }
 
+TEST(FoxgloveJson, MissingFieldsHaveTheDefaultsOfTheirDefinition) {
+  const auto pose = decode<geometry_msgs::PoseStamped>(
+      *cdr_from_json(schema<geometry_msgs::PoseStamped>(), {{"pose", {{"position", {{"x", 1}}}}}}));
+  ASSERT_TRUE(pose.ok()) << pose.error().to_string();
+  EXPECT_EQ(pose->pose.orientation, (geometry_msgs::Quaternion{0, 0, 0, 1}));
+  const auto part = decode<geometry_msgs::PoseStamped>(*cdr_from_json(
+      schema<geometry_msgs::PoseStamped>(), {{"pose", {{"orientation", {{"x", 1}, {"w", 0}}}}}}));
+  ASSERT_TRUE(part.ok());
+  EXPECT_EQ(part->pose.orientation, (geometry_msgs::Quaternion{1, 0, 0, 0}));
+
+  const auto made = MessageSchema::parse(
+      "string name \"no # name\"  \nbool on true # a remark\nint8 level -3\nfloat32 share 0.5\n"
+      "uint16[3] sizes [1, 2, 3]\nint32[] list [-7, 8]\nstring[] words ['a, b', \"c\"]\n"
+      "uint8 plain # none\ngeometry_msgs/Quaternion[2] q\n"
+      "================================================================================\n"
+      "MSG: geometry_msgs/Quaternion\nfloat64 x 0\nfloat64 y 0\nfloat64 z 0\nfloat64 w 1\n",
+      "test_msgs/msg/Made");
+  ASSERT_TRUE(made.ok()) << made.error().to_string();
+  const auto whole = json_from_cdr(*made, *cdr_from_json(*made, json::object()));
+  ASSERT_TRUE(whole.ok()) << whole.error().to_string();
+  const json q = {{"x", 0.0}, {"y", 0.0}, {"z", 0.0}, {"w", 1.0}};
+  EXPECT_EQ(*whole, (json{{"name", "no # name"},
+                          {"on", true},
+                          {"level", -3},
+                          {"share", 0.5},
+                          {"sizes", {1, 2, 3}},
+                          {"list", {-7, 8}},
+                          {"words", {"a, b", "c"}},
+                          {"plain", 0},
+                          {"q", {q, q}}}));
+}
+
 TEST(FoxgloveJson, WhatLacksIsZeroAndWhatIsWrongIsNamed) {
   const auto imu = schema<sensor_msgs::Imu>();
   const auto bytes = cdr_from_json(imu, {{"linear_acceleration", {{"z", 9.81}}}});

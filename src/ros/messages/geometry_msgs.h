@@ -32,6 +32,7 @@ struct Point32 {
 /// The order is x, y, z, w; MuJoCo's is w, x, y, z.
 struct Quaternion {
   double x = 0, y = 0, z = 0, w = 1;
+  GLOAM_DEFAULTS(x = 0, y = 0, z = 0, w = 1)
   GLOAM_MESSAGE(Quaternion, x, y, z, w)
 };
 

@@ -40,6 +40,7 @@ struct SetSimulationState_Response {
 
 struct StepSimulation_Request {
   uint64_t steps = 1;
+  GLOAM_DEFAULTS(steps = 1)
   GLOAM_MESSAGE(StepSimulation_Request, steps)
 };
 struct StepSimulation_Response {
