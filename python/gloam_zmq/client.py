@@ -56,8 +56,9 @@ class Client:
         socket = self._context.socket(kind)
         socket.setsockopt(zmq.LINGER, 0)
         socket.setsockopt(zmq.IPV6, "[" in address)
-        socket.setsockopt(zmq.HEARTBEAT_IVL, 1000)
-        socket.setsockopt(zmq.HEARTBEAT_TIMEOUT, 5000)
+        # Not ZMQ_HEARTBEAT_IVL, whose timer ends the process when a connection is lost while a slow reader's queue is full (libzmq 4364, 3937).
+        for option, value in ((zmq.TCP_KEEPALIVE, 1), (zmq.TCP_KEEPALIVE_IDLE, 5), (zmq.TCP_KEEPALIVE_INTVL, 1), (zmq.TCP_KEEPALIVE_CNT, 5)):
+            socket.setsockopt(option, value)
         if self._server_key:
             socket.curve_serverkey = self._server_key
             socket.curve_publickey, socket.curve_secretkey = zmq.curve_keypair()

@@ -107,7 +107,8 @@ void Connection::become_websocket(const Admission& admission) {
       [name = std::string(admission.protocol.name)](websocket::response_type& response) {
         response.set(http::field::sec_websocket_protocol, name);
       }));
-  websocket_->read_message_max(state_.options.message_bytes);
+  websocket_->read_message_max(admission.may_control ? state_.options.message_bytes
+                                                     : state_.options.watcher_bytes);
   websocket_->auto_fragment(false);
   buffer_.clear();
   websocket_->async_accept(request_->get(), [self = shared_from_this(), admission](error_code e) {

@@ -22,7 +22,8 @@ struct ServerOptions {
   int max_clients = 32;  ///< with the token, and as many without it
   std::string token;
   OutboxLimits outbox;
-  size_t message_bytes = size_t{1} << 20;        ///< longest message of a client
+  size_t message_bytes = size_t{1} << 20;        ///< longest message of a client with the token
+  size_t watcher_bytes = size_t{16} << 10;       ///< and of one without, which may only subscribe
   std::chrono::milliseconds request_time{5000};  ///< for a whole request header, or a handshake
   std::chrono::milliseconds idle_time{30000};    ///< a silent client is pinged at half of it
   std::chrono::milliseconds tick{50};            ///< ServerEvents::on_tick

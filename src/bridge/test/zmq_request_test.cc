@@ -45,6 +45,45 @@ TEST(ZmqRequest, IsReadWhole) {
   EXPECT_EQ(arguments->integer("n"), 3);
 }
 
+TEST(ZmqRequest, ItsTokenIsFoundWithoutItsValues) {
+  const PackBuffer buffer = make_request("step", 1, [](Packer& packer) {
+    packer.pack(std::string_view("token"));
+    packer.pack_array(3);
+    for (int i = 0; i < 3; ++i) packer.pack(std::string_view("another"));
+  });
+  EXPECT_EQ(peek_token(bytes_of(buffer)), kTestToken);
+  EXPECT_EQ(peek_token({}), "");
+  const std::vector<uint8_t> deep(100000, 0x91), text = {0xa5, 't', 'o', 'k', 'e', 'n'};
+  EXPECT_EQ(peek_token(deep), "");
+  EXPECT_EQ(peek_token(text), "");
+  PackBuffer inner;
+  Packer packer(inner);
+  packer.pack_map(1);
+  packer.pack(std::string_view("args"));
+  packer.pack_map(1);
+  pack_pair(packer, "token", std::string_view(kTestToken));
+  EXPECT_EQ(peek_token(bytes_of(inner)), "") << "of the request alone";
+}
+
+TEST_F(ZmqBridgeTest, LongRequestsNeedTheTokenBeforeTheyAreRead) {
+  start_default();
+  RawClient client(operations_address());
+  for (const std::string_view token : {std::string_view(""), std::string_view("wrong")}) {
+    client.send(make_request(
+        "ping", 1,
+        [](Packer& packer) {
+          packer.pack(std::string_view("nothing"));
+          packer.pack_array(100000);
+          for (int i = 0; i < 100000; ++i) packer.pack_nil();
+        },
+        token));
+    const auto reply = client.receive();
+    ASSERT_TRUE(reply);
+    EXPECT_THAT((*reply)["error"].to_string(), HasSubstr("needs the token"));
+  }
+  client.call("ping");
+}
+
 TEST(ZmqRequest, OfAnotherFormIsRefused) {
   EXPECT_THAT(parse_error({}), HasSubstr("cut off"));
   EXPECT_THAT(parse_error_of([](Packer& p) { p.pack(3); }), HasSubstr("no map"));

@@ -21,10 +21,17 @@ constexpr size_t kZ85Key = 40;
 constexpr int kMaxKeyFile = 1 << 16;
 constexpr int kMaxSubscription = 1 << 12;  // bytes of a subscription
 constexpr int kReplies = 64;               // that wait for one client
+// Requests of one client that are read before the server takes them: each may be of
+// kMaxRequestBytes, whether or not the client has the token.
+constexpr int kRequests = 8;
 // Messages that wait for one subscriber. A stuck one holds as many pictures, which all stuck ones
 // share.
 constexpr int kStreamMessages = 64;
-constexpr int kHeartbeat = 1000, kHeartbeatTimeout = 5000, kHandshake = 5000;  // [ms]
+constexpr int kHandshake = 5000;  // [ms]
+// A peer that has vanished from the network is noticed by TCP itself: the kernel probes a silent
+// connection after kIdle seconds, kProbes times, and gives up unacknowledged data after kUnsent.
+constexpr int kIdle = 5, kProbePause = 1, kProbes = 5;  // [s], [s], number
+constexpr int kUnsent = 10000;                          // [ms]
 
 Error key_error(const std::string& file, const SourceLoc& loc, std::string_view why) {
   return {ErrorKind::kUsage, fmt::format("CURVE key '{}' {}", file, why), loc,
@@ -107,9 +114,14 @@ void set_common(zmq::socket_t& socket, const std::string& host, const CurveKey& 
   socket.set(zmq::sockopt::ipv6, host.find(':') != std::string::npos);
   socket.set(zmq::sockopt::backlog, 256);
   socket.set(zmq::sockopt::handshake_ivl, kHandshake);
-  socket.set(zmq::sockopt::heartbeat_ivl, kHeartbeat);
-  socket.set(zmq::sockopt::heartbeat_timeout, kHeartbeatTimeout);
-  socket.set(zmq::sockopt::heartbeat_ttl, kHeartbeatTimeout);
+  // No ZMTP heartbeats (ZMQ_HEARTBEAT_IVL): in libzmq up to 4.3.5 their timer asserts, which ends
+  // the process, when it fires on a connection that was reset while its input was stopped by a full
+  // pipe (libzmq issues 4364 and 3937). Any client could bring that about without a token.
+  socket.set(zmq::sockopt::tcp_keepalive, 1);
+  socket.set(zmq::sockopt::tcp_keepalive_idle, kIdle);
+  socket.set(zmq::sockopt::tcp_keepalive_intvl, kProbePause);
+  socket.set(zmq::sockopt::tcp_keepalive_cnt, kProbes);
+  socket.set(zmq::sockopt::tcp_maxrt, kUnsent);
   if (key.secret.empty()) return;
   socket.set(zmq::sockopt::curve_server, true);
   socket.set(zmq::sockopt::curve_secretkey, key.secret);
@@ -155,7 +167,7 @@ Result<std::unique_ptr<Endpoints>> Endpoints::bind(const ZmqOptions& options) {
     endpoints->operations.set(zmq::sockopt::router_mandatory, true);
     endpoints->operations.set(zmq::sockopt::maxmsgsize, static_cast<int64_t>(kMaxRequestBytes));
     endpoints->operations.set(zmq::sockopt::sndhwm, kReplies);
-    endpoints->operations.set(zmq::sockopt::rcvhwm, kReplies);
+    endpoints->operations.set(zmq::sockopt::rcvhwm, kRequests);
     set_common(endpoints->streams, options.host, key);
     endpoints->streams.set(zmq::sockopt::maxmsgsize, static_cast<int64_t>(kMaxSubscription));
     endpoints->streams.set(zmq::sockopt::sndhwm, kStreamMessages);

@@ -41,6 +41,43 @@ Result<msgpack::object_handle> unpack_within_limits(std::span<const uint8_t> byt
   }
 }
 
+/// Finds the value of the key "token" of the outermost map. Parsing ends where a callback returns
+/// false.
+class TokenFinder : public msgpack::null_visitor {
+ public:
+  std::string_view token() const { return token_; }
+
+  bool visit_str(const char* text, uint32_t size) {
+    const std::string_view value(text, size);
+    if (depth_ == 1 && is_key_) key_is_token_ = value == "token";
+    if (depth_ == 1 && !is_key_ && key_is_token_) token_ = value;
+    return token_.empty();
+  }
+  bool start_map(uint32_t) { return ++depth_ <= kMaxDepth; }
+  bool end_map() {
+    --depth_;
+    return true;
+  }
+  bool start_array(uint32_t) { return ++depth_ <= kMaxDepth; }
+  bool end_array() {
+    --depth_;
+    return true;
+  }
+  bool start_map_key() {
+    if (depth_ == 1) is_key_ = true, key_is_token_ = false;
+    return true;
+  }
+  bool end_map_key() {
+    if (depth_ == 1) is_key_ = false;
+    return true;
+  }
+
+ private:
+  std::string_view token_;
+  int depth_ = 0;
+  bool is_key_ = false, key_is_token_ = false;
+};
+
 Result<std::string> short_text(const msgpack::object& value, std::string_view key) {
   if (value.type != object_type::STR) return no_request(fmt::format("'{}' is no text", key));
   if (value.via.str.size > kMaxNameBytes)
@@ -106,6 +143,16 @@ Result<Request> parse_request(std::span<const uint8_t> bytes) {
   }
   if (request.operation.empty()) return no_request("the request names no 'op'");
   return request;
+}
+
+std::string_view peek_token(std::span<const uint8_t> bytes) {
+  TokenFinder finder;
+  try {
+    msgpack::parse(reinterpret_cast<const char*>(bytes.data()), bytes.size(), finder);
+  } catch (const std::exception&) {
+    return {};
+  }
+  return finder.token();
 }
 
 PackBuffer error_reply(const msgpack::object& id, const Error& error) {

@@ -16,6 +16,9 @@ inline constexpr size_t kMaxRequestBytes = size_t{16} << 20;
 inline constexpr int kMaxDepth = 8;            ///< of arrays and maps in one another
 inline constexpr size_t kMaxNameBytes = 4096;  ///< of names, of ids and of tokens
 
+/// Longest request that is parsed before its token is known to be right [bytes].
+inline constexpr size_t kMostUnproven = 4096;
+
 struct Request {
   std::string operation;
   std::string token;                                    ///< empty = none
@@ -27,6 +30,10 @@ struct Request {
 /// Errors: no msgpack, more than one value, deeper or larger than the limits, no map of {op …}, a
 /// key that is unknown, of another type or there twice.
 Result<Request> parse_request(std::span<const uint8_t> bytes);
+
+/// The token of a request, found without making its values; "" where there is none, or bytes that
+/// are no request. Takes no memory, whatever the bytes hold.
+std::string_view peek_token(std::span<const uint8_t> bytes);
 
 /// {id, error}.
 PackBuffer error_reply(const msgpack::object& id, const Error& error);
