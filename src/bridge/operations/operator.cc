@@ -27,7 +27,9 @@ const char* to_string(RunState state) {
 }
 
 Operator::Operator(Simulation& simulation)
-    : private_(std::make_unique<Private>(simulation)), simulation_(simulation) {}
+    : private_(std::make_unique<Private>(simulation)), simulation_(simulation) {
+  private_->waits_for_sensors = simulation.stats().pace == Pace::kSensors;
+}
 Operator::~Operator() = default;
 
 Status Operator::Private::need_world() const {
@@ -39,6 +41,14 @@ Status Operator::Private::exchange(const Scene& scene, const ProgressCallback& p
   GLOAM_TRY(const World world, World::compile(scene, progress));
   GLOAM_TRY_STATUS(simulation.recompile(world));
   return {};
+}
+
+Scene Operator::Private::without_access(Scene scene) const {
+  const Scene now = written_scene(simulation.world());
+  scene.bridge = now.bridge;
+  scene.record = now.record;
+  scene.sim.pace = now.sim.pace;
+  return scene;
 }
 
 void Operator::Private::forget_waiting() {
@@ -117,20 +127,37 @@ Status Operator::step(int64_t count, const StepProgress& progress) {
 }
 
 Status Operator::set_speed(std::optional<double> speed) {
-  if (!speed) {
-    simulation_.set_pace(Pace::kFast, 1);
-  } else if (*speed >= kSlowest && *speed <= kFastest) {
-    simulation_.set_pace(Pace::kRealTime, *speed);
-  } else {
+  Private& p = *private_;
+  if (speed && !(*speed >= kSlowest && *speed <= kFastest))
     return Error{ErrorKind::kInput, "the speed must be 0.001 to 1000"};
-  }
-  private_->speed = speed.value_or(0);
+  if (speed) p.speed = *speed;
+  p.is_fast = !speed;
+  simulation_.set_pace(pace(), p.speed);
   return {};
 }
 
+Status Operator::set_pace(std::string_view name) {
+  GLOAM_TRY(const Pace pace, pace_named(name));
+  if (pace == Pace::kLockstep)
+    return Error{ErrorKind::kInput,
+                 "a live run has no pace 'lockstep'",
+                 {},
+                 "pause it and take steps, or one of: fast, realtime, sensors"};
+  Private& p = *private_;
+  p.is_fast = pace == Pace::kFast;
+  if (!p.is_fast) p.waits_for_sensors = pace == Pace::kSensors;
+  simulation_.set_pace(pace, p.speed);
+  return {};
+}
+
+Pace Operator::pace() const {
+  if (private_->is_fast) return Pace::kFast;
+  return private_->waits_for_sensors ? Pace::kSensors : Pace::kRealTime;
+}
+
 std::optional<double> Operator::speed() const {
-  const double speed = private_->speed;
-  return speed > 0 ? std::optional(speed) : std::nullopt;
+  if (private_->is_fast) return std::nullopt;
+  return private_->speed;
 }
 
 Status Operator::reset(const ResetScope& scope) {

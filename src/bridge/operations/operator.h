@@ -42,6 +42,10 @@ struct ResetScope {
 /// Called between steps with those that are done and left; returns false to stop.
 using StepProgress = std::function<bool(int64_t done, int64_t left)>;
 
+/// Whether an option is none of a client's to change in a run: it opens network interfaces or files
+/// ([bridge], [record]), or has been used when the run began.
+bool is_fixed_option(std::string_view path);
+
 /// Numbers that a client changes of an entity; what is not given stays.
 struct StateChange {
   std::optional<Pose> X_WE = {};
@@ -69,8 +73,13 @@ class Operator {
   /// Takes 1 or more steps, only while paused or stopped, and blocks. Errors: kUsage while it plays
   /// or another client steps; kInterrupted when `progress` or pause() has ended it.
   Status step(int64_t count, const StepProgress& progress = {});
-  /// Speed in simulated seconds per second, 0.001 … 1000; empty = as fast as possible.
+  /// Speed in simulated seconds per second, 0.001 … 1000; empty = as fast as possible. The pace
+  /// stays kSensors where it is.
   Status set_speed(std::optional<double> speed);
+  /// Pace::kFast, kRealTime or kSensors, at the present speed (docs/sensors.md). Error: no such
+  /// pace.
+  Status set_pace(std::string_view pace);
+  Pace pace() const;
   std::optional<double> speed() const;
   Status reset(const ResetScope& scope = {});
 
@@ -113,6 +122,7 @@ class Operator {
   std::vector<OptionInfo> options() const;
   Result<std::string> option(std::string_view path) const;
   /// All of them or none; recompiles the World.
+  /// Error: also for options that clients may not change (is_fixed_option).
   Status set_options(const std::vector<std::pair<std::string, std::string>>& values);
   /// Elements of a live field at the latest instant; names are those of World::inputs(), "gravity".
   Result<std::vector<double>> live_field(std::string_view name) const;

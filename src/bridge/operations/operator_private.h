@@ -38,6 +38,9 @@ struct Operator::Private {
   Status solve();
   /// Exchanges the World. Under change_mutex. Error: the physics has failed.
   Status exchange(const Scene& scene, const ProgressCallback& progress = {});
+  /// The scene with the bridges, recordings and run settings of the one that runs: a client's
+  /// scene opens no network interface and no file.
+  Scene without_access(Scene scene) const;
   /// Refuses what needs a World.
   Status need_world() const;
   Scene first_scene() const;
@@ -56,7 +59,9 @@ struct Operator::Private {
   std::atomic<bool> rests{true};  ///< stopped, if it is paused at its first instant
   std::atomic<bool> stepping{false}, stop_stepping{false};
   std::atomic<bool> unloaded{false}, loading{false};
-  std::atomic<double> speed{1};  ///< 0 = as fast as possible
+  std::atomic<double> speed{1};      ///< [simulated s per s], where it is paced
+  std::atomic<bool> is_fast{false};  ///< as fast as possible
+  std::atomic<bool> waits_for_sensors{false};
 
   mutable std::mutex names_mutex;  ///< for what follows
   Scene first;                     ///< that resets go back to

@@ -29,6 +29,13 @@ Status check_files(Scene scene, const ModelSource& source) {
 
 }  // namespace
 
+bool is_fixed_option(std::string_view path) {
+  constexpr std::string_view kFixed[] = {"sim",    "record", "bridge", "randomize",
+                                         "metric", "goal",   "scene"};
+  const std::string_view table = path.substr(0, path.find('.'));
+  return std::ranges::find(kFixed, table) != std::end(kFixed);
+}
+
 std::vector<OptionInfo> Operator::options() const {
   return list_options(written_scene(simulation_.world()));
 }
@@ -43,8 +50,10 @@ Status Operator::set_options(const std::vector<std::pair<std::string, std::strin
   const std::lock_guard one_at_a_time(p.change_mutex);
   Scene scene = written_scene(simulation_.world());
   for (const auto& [path, value] : values) {
-    if (path == "sim.timestep")
-      return Error{ErrorKind::kUnsupported, "the timestep of a running simulation stays as it is"};
+    if (is_fixed_option(path))
+      return Error{
+          ErrorKind::kUnsupported,
+          fmt::format("'{:.200}' stays as it is in a run: clients cannot change it", path)};
     GLOAM_TRY_STATUS(set_option(scene, path, value));
   }
   GLOAM_TRY_STATUS(check_files(scene, p.source));
@@ -71,7 +80,8 @@ Status Operator::recompile(std::string_view toml) {
   const std::filesystem::path folder = first.file.empty()
                                            ? std::filesystem::current_path(code)
                                            : std::filesystem::absolute(first.file).parent_path();
-  GLOAM_TRY(Scene scene, parse_scene(toml, folder, first.access));
+  GLOAM_TRY(const Scene parsed, parse_scene(toml, folder, first.access));
+  const Scene scene = p.without_access(parsed);
   const std::lock_guard one_at_a_time(p.change_mutex);
   GLOAM_TRY_STATUS(p.exchange(scene));
   return {};

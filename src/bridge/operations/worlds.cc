@@ -131,7 +131,8 @@ Status Operator::Private::enter(const Scene& scene) {
 Result<WorldFile> Operator::load_world(const std::string& uri, const std::string& text) {
   Private& p = *private_;
   GLOAM_TRY(const std::vector<WorldFile> known, worlds());
-  GLOAM_TRY(const Scene scene, p.read_world(uri, text, known));
+  GLOAM_TRY(const Scene read, p.read_world(uri, text, known));
+  const Scene scene = p.without_access(read);
   p.stop_stepping = true;
   const std::lock_guard one_at_a_time(p.change_mutex);
   p.loading = true;

@@ -320,7 +320,21 @@ TEST_F(OperatorTest, ChangesOptionsAndLiveFields) {
   EXPECT_EQ(op().option("prop.seat.seed").value(), "3");
   expect_error(op().set_options({{"sim.timestep", "0.001"}}), ErrorKind::kUnsupported, "timestep");
   EXPECT_GT(op().options().size(), 20u);
+  // No client opens a network interface or a file, or changes what the run began with.
+  for (const char* path :
+       {"bridge.zmq.host", "bridge.zmq.port", "bridge.zmq.curve_secret", "bridge.foxglove.host",
+        "bridge.ros2.network", "bridge.ros2.domain", "bridge", "record.outputs", "record.mcap",
+        "record.topics", "sim.seed", "sim.duration", "scene.name", "randomize.a.option"})
+    expect_error(op().set_options({{path, "'0.0.0.0'"}}), ErrorKind::kUnsupported, path);
+  expect_ok(
+      op().recompile("[environment]\nfile = \"room.xml\"\n[bridge.zmq]\nhost = \"0.0.0.0\"\n"
+                     "[record]\nmcap = true\n"));
+  EXPECT_FALSE(simulation_->world().scene().bridge.any());
+  EXPECT_FALSE(simulation_->world().scene().record.mcap);
+  expect_ok(op().reset());
+}
 
+TEST_F(OperatorTest, ChangesLiveFields) {
   for (const InputInfo& input : simulation_->world().inputs())
     if (input.kind == InputKind::kLiveField)
       expect_ok(op().set_live_field(input.name, 0,

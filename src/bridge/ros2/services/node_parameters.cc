@@ -21,6 +21,8 @@ constexpr OwnParameter kOwn[] = {
     {"paused", ParameterType::PARAMETER_BOOL, "Whether the simulation rests", false},
     {"speed", ParameterType::PARAMETER_DOUBLE,
      "Simulated seconds per second, 0.001 … 1000; 0 = as fast as possible", false},
+    {"pace", ParameterType::PARAMETER_STRING,
+     "fast, realtime, or sensors: waits for every sensor that is read", false},
 };
 
 constexpr std::string_view kLive = "live.";
@@ -53,17 +55,11 @@ std::string live_field_of(const std::string& name) {
   return name.starts_with(kLive) ? name.substr(kLive.size()) : std::string();
 }
 
-bool is_fixed_option(std::string_view path) {
-  constexpr std::string_view kFixed[] = {"sim.",    "record.", "bridge.", "randomize",
-                                         "metric.", "goal.",   "scene."};
-  return std::ranges::any_of(kFixed,
-                             [&](std::string_view begin) { return path.starts_with(begin); });
-}
-
 ri::ParameterValue NodeParameters::value(const std::string& name) const {
   if (name == "use_sim_time") return bool_parameter(true);
   if (name == "paused") return bool_parameter(op_.state() != RunState::kPlaying);
   if (name == "speed") return double_parameter(op_.speed().value_or(0));
+  if (name == "pace") return string_parameter(to_string(op_.pace()));
   if (const std::string field = live_field_of(name); !field.empty()) {
     Result<std::vector<double>> numbers = op_.live_field(field);
     return numbers.ok() ? doubles_parameter(std::move(*numbers)) : ri::ParameterValue{};
@@ -85,6 +81,12 @@ Outcome NodeParameters::check_own(const ri::Parameter& parameter) const {
   if (own.type == ParameterType::PARAMETER_BOOL)
     return parameter.value.type == own.type ? Outcome{true, ""}
                                             : refused("'" + parameter.name + "' is a bool");
+  if (own.type == ParameterType::PARAMETER_STRING) {
+    const std::string& name = parameter.value.string_value;
+    const bool good =
+        parameter.value.type == own.type && pace_named(name).ok() && name != "lockstep";
+    return good ? Outcome{true, ""} : refused("'pace' is one of: fast, realtime, sensors");
+  }
   double number = 0;
   const bool good =
       number_of(parameter.value, &number) && (number == 0 || (number >= 1e-3 && number <= 1e3));
@@ -102,6 +104,7 @@ Status NodeParameters::set_own(const ri::Parameter& parameter) {
     number_of(parameter.value, &speed);
     return op_.set_speed(speed > 0 ? std::optional(speed) : std::nullopt);
   }
+  if (parameter.name == "pace") return op_.set_pace(parameter.value.string_value);
   if (parameter.name == "use_sim_time") return {};
   std::vector<double> numbers;
   numbers_of(parameter.value, &numbers);

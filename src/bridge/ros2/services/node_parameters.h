@@ -23,8 +23,6 @@ std::vector<OwnParameter> own_parameters();
 const OwnParameter* find_own_parameter(std::string_view name);
 /// "gravity" of "live.gravity": a live field (gloam/command.h); empty = another parameter.
 std::string live_field_of(const std::string& name);
-/// Options that a run is begun with: they stay.
-bool is_fixed_option(std::string_view path);
 
 class NodeParameters {
  public:

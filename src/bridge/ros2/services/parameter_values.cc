@@ -137,6 +137,13 @@ ParameterValue double_parameter(double value) {
   return parameter;
 }
 
+ParameterValue string_parameter(std::string value) {
+  ParameterValue parameter;
+  parameter.type = ParameterType::PARAMETER_STRING;
+  parameter.string_value = std::move(value);
+  return parameter;
+}
+
 ParameterValue doubles_parameter(std::vector<double> values) {
   ParameterValue parameter;
   parameter.type = ParameterType::PARAMETER_DOUBLE_ARRAY;

@@ -10,6 +10,7 @@ namespace gloam::bridge {
 
 rcl_interfaces::ParameterValue bool_parameter(bool value);
 rcl_interfaces::ParameterValue double_parameter(double value);
+rcl_interfaces::ParameterValue string_parameter(std::string value);
 rcl_interfaces::ParameterValue doubles_parameter(std::vector<double> values);
 /// A number of either type; false = it is none.
 bool number_of(const rcl_interfaces::ParameterValue& value, double* number);
