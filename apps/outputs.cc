@@ -16,9 +16,9 @@ namespace {
 std::string why_void(const std::string& output, const Scene& scene, const World& world) {
   if (output == "lidar" && scene.lidars.empty()) return "the scene has no [[lidar]]";
   if (output == "sensors" && world.info().sensors.empty()) return "the model has no sensors";
-  const auto* file = std::ranges::find(kCameraFiles, output, &CameraFile::output);
-  if (file == kCameraFiles.end()) return {};
-  const CameraChannel& channel = *find_camera_channel(file->channel);
+  const CameraChannel* const found = find_output_channel(output);
+  if (found == nullptr) return {};
+  const CameraChannel& channel = *found;
   const bool any =
       channel.model.empty() || std::ranges::any_of(scene.cameras, [&](const CameraOptions& camera) {
         return channel.has_model(camera.sensing);
@@ -30,7 +30,7 @@ std::string why_void(const std::string& output, const Scene& scene, const World&
 }  // namespace
 
 Status check_outputs(const std::vector<std::string>& outputs) {
-  const std::vector<std::string> known(kRecordOutputs.begin(), kRecordOutputs.end());
+  const std::vector<std::string> known(kOutputNames.begin(), kOutputNames.end());
   for (const std::string& output : outputs) {
     if (std::ranges::find(known, output) != known.end()) continue;
     std::string hint = suggest_name(output, known);
@@ -38,6 +38,21 @@ Status check_outputs(const std::vector<std::string>& outputs) {
                  fmt::format("--output {}: there is no such output", output),
                  {},
                  hint.empty() ? "gloam run --help lists them" : hint};
+  }
+  return {};
+}
+
+Status check_still_outputs(const std::vector<std::string>& outputs) {
+  GLOAM_TRY_STATUS(check_outputs(outputs));
+  for (const std::string& output : outputs) {
+    const bool has_still = std::ranges::any_of(kCameraFiles, [&](const CameraFile& file) {
+      return file.is_of_each_frame() && (file.output == output || file.channel == output);
+    });
+    if (!has_still)
+      return Error{ErrorKind::kUsage,
+                   fmt::format("--output {}: a still has none", output),
+                   {},
+                   "record it: gloam run --output " + output};
   }
   return {};
 }

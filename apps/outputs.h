@@ -9,8 +9,11 @@
 
 namespace gloam::cli {
 
-/// Error: a word that is none of kRecordOutputs, with the nearest one.
+/// Error: a word that is none of kOutputNames, with the nearest one.
 Status check_outputs(const std::vector<std::string>& outputs);
+
+/// Error: also for outputs of whole recordings, which stills do not have.
+Status check_still_outputs(const std::vector<std::string>& outputs);
 
 /// Tells on stderr which of them nothing in the scene delivers.
 void tell_void_outputs(const std::vector<std::string>& outputs, const Scene& scene,

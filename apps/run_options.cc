@@ -133,7 +133,7 @@ void RunOptions::add_to(CLI::App& command) {
   RenderFlags::add_to(command);
   command
       .add_option("--output", outputs,
-                  fmt::format("What to record: {}", fmt::join(kRecordOutputs, " ")))
+                  fmt::format("What to record: {}", fmt::join(kOutputNames, " ")))
       ->delimiter(',');
   add_keyframe_to(command);
   SceneOptions::add_to(command);

@@ -8,6 +8,7 @@
 
 #include "gloam/outputs.h"
 #include "json_text.h"
+#include "outputs.h"
 #include "print.h"
 #include "run_options.h"
 
@@ -31,11 +32,16 @@ std::string channel_help() {
     });
     if (has_still) (channel.model.empty() ? plain : modelled) += fmt::format(" {}", channel.name);
   }
-  return fmt::format("{};{} of cameras with these models", plain, modelled);
+  return fmt::format(
+      "{};{} of cameras with these models. A channel stands for all its files; their own names, as "
+      "of gloam run, choose one: depth_exr",
+      plain, modelled);
 }
 
 int render(const RenderCommand& command_line, const Globals& globals) {
   RenderCommand command = command_line;
+  if (const Status status = check_still_outputs(command.options.outputs); !status.ok())
+    return fail(status.error());
   auto scene = command.options.load(command.file);
   if (!scene.ok()) return fail(scene.error());
   if (!command.options.spp && !scene->render.error) scene->render.spp = kStillSamples;
@@ -70,7 +76,7 @@ int render(const RenderCommand& command_line, const Globals& globals) {
   if (!frames.ok()) return fail(frames.error());
 
   auto json = nlohmann::ordered_json::array();
-  auto stills = write_stills(*world, *frames, command.out);
+  auto stills = write_stills(*world, *frames, command.out, command.options.outputs);
   if (!stills.ok()) return fail(stills.error());
   for (const StillFiles& still : *stills) {
     for (const auto& file : still.files) {

@@ -47,6 +47,7 @@ struct RunReport {
   std::vector<std::string> written;  ///< the main result files, for people
   std::vector<std::pair<std::string, double>>
       results;    ///< velocity errors, falls … as in summary.json
+  std::vector<SensorCost> sensors;  ///< costs and rates of what was recorded
   Status status;  ///< why it ended early, if it did; what was recorded is readable
   std::vector<std::string> notes = {};  ///< for people: "poses only, since …"
 };
@@ -104,15 +105,18 @@ struct StillFiles {
 };
 /// Writes stills of one World into a folder: each camera's pictures under a name of its own
 /// (write_frame), cameras.json, which tells whose they are, and, where a picture holds ids,
-/// labels.json; both as a recorded run has them.
+/// labels.json; both as a recorded run has them. `outputs`: as of CameraRequest; files of others
+/// are left out, empty = all that the frames hold.
 Result<std::vector<StillFiles>> write_stills(const World& world,
                                              const std::vector<CameraFrame>& frames,
-                                             const std::filesystem::path& folder);
+                                             const std::filesystem::path& folder,
+                                             const std::vector<std::string>& outputs = {});
 
 /// Writes the channels of one frame as files beside each other: NAME.png, NAME_depth.png … Returns
 /// their paths.
 Result<std::vector<std::filesystem::path>> write_frame(const CameraFrame& frame,
                                                        const std::filesystem::path& folder,
-                                                       const std::string& name);
+                                                       const std::string& name,
+                                                       const std::vector<std::string>& outputs = {});
 
 }  // namespace gloam

@@ -115,7 +115,7 @@ Result<std::vector<CameraRequest>> camera_requests(const World& world, const Run
     if (std::ranges::none_of(outputs, is_picture)) continue;
     camera.outputs = channels_for(outputs, options != nullptr ? options->sensing : CameraSensing{});
     camera.render = scene.render;
-    camera.required = request.simulation.pace == Pace::kFast;
+    camera.required = waits_for_sensors(request.simulation.pace);
     requests.push_back(camera);
   }
   return requests;
@@ -163,7 +163,7 @@ LogRequest log_request_of(const Scene& scene, const RunRequest& request) {
   log.state_rate = record.state_rate;
   log.width = request.width;
   log.height = request.height;
-  log.required = request.simulation.pace == Pace::kFast;
+  log.required = waits_for_sensors(request.simulation.pace);
   return log;
 }
 
@@ -234,7 +234,7 @@ Status begin_where_asked(LiveSimulation& simulation, const World& world,
 }  // namespace
 
 void set_record_outputs(const std::vector<std::string>& outputs, Scene* scene) {
-  scene->record.outputs = outputs;
+  scene->record.outputs = recorded_outputs(outputs);
   for (CameraOptions& camera : scene->cameras) camera.outputs.reset();
   const bool has_lidar = wants(outputs, "lidar");
   for (LidarOptions& lidar : scene->lidars) {
@@ -338,7 +338,7 @@ Result<RunReport> record_motion(const World& world, const RunRequest& request,
     options.folder = request.out;
     options.overwrite = request.overwrite;
     options.outputs = scene.record.outputs;
-    options.wait = request.simulation.pace == Pace::kFast;
+    options.wait = waits_for_sensors(request.simulation.pace);
     if (progress && !progress({"preparing", 0, seconds_since(start)}))
       return Error{ErrorKind::kInterrupted, "interrupted"};
     GLOAM_TRY(recorder, Recorder::start(options, info));
@@ -353,7 +353,7 @@ Result<RunReport> record_motion(const World& world, const RunRequest& request,
     }
     if (!info.sensors.empty()) {
       GLOAM_TRY(sensors, simulation->open_all_sensors(
-                             request.simulation.pace == Pace::kFast,
+                             waits_for_sensors(request.simulation.pace),
                              [&](const SensorMessage& message) { recorder->add_sensor(message); }));
     }
     for (const RecordedLidar& lidar : info.lidars) {
@@ -363,7 +363,7 @@ Result<RunReport> record_motion(const World& world, const RunRequest& request,
         recorder->add_scan(scan);
       };
       GLOAM_TRY(auto live, simulation->open_live_lidar(
-                               {lidar.name, request.simulation.pace == Pace::kFast}, take));
+                               {lidar.name, waits_for_sensors(request.simulation.pace)}, take));
       lidars.push_back(std::move(live));
     }
     prepared = seconds_since(start);
@@ -449,6 +449,7 @@ Result<RunReport> record_motion(const World& world, const RunRequest& request,
     std::sort(report.written.begin(), report.written.end());
   }
   if (report.results.empty()) report.results = metrics->summary();
+  report.sensors = simulation->sensor_costs();
   report.wall_time = seconds_since(start);
   return report;
 }

@@ -123,7 +123,7 @@ Result<std::vector<CameraFrame>> render_stills(const World& world, double time,
     // Draws are keyed by the step: pictures of two times have different noise.
     sensor->set_draws_by_index(true);
     const auto frame =
-        sensor->capture(*shared->renderer, shared->mutex, exposure, poses[previous[i]], steps);
+        sensor->capture(*shared->renderer, shared->turns, exposure, poses[previous[i]], 0);
     if (frame == nullptr) return Error{ErrorKind::kInterrupted, "interrupted"};
     if (requests[i].render.error) {
       tell_what_was_reached(requests[i], *frame, sensor->stats());
@@ -136,7 +136,8 @@ Result<std::vector<CameraFrame>> render_stills(const World& world, double time,
 
 Result<std::vector<StillFiles>> write_stills(const World& world,
                                              const std::vector<CameraFrame>& frames,
-                                             const std::filesystem::path& folder) {
+                                             const std::filesystem::path& folder,
+                                             const std::vector<std::string>& outputs) {
   FileNames names{"cameras.json", "labels.json"};
   std::vector<std::string> suffixes, taken;
   for (const CameraFile& file : kCameraFiles)
@@ -146,7 +147,7 @@ Result<std::vector<StillFiles>> write_stills(const World& world,
   bool has_ids = false;
   for (const CameraFrame& frame : frames) {
     taken.push_back(names.take(frame.camera, suffixes));
-    GLOAM_TRY(auto files, write_frame(frame, folder, taken.back()));
+    GLOAM_TRY(auto files, write_frame(frame, folder, taken.back(), outputs));
     written.push_back({frame.camera, std::move(files)});
     cameras.push_back({.name = frame.camera, .intrinsics = frame.intrinsics});
     has_ids = has_ids || !frame.part.empty() || !frame.objects.empty();
@@ -162,11 +163,16 @@ Result<std::vector<StillFiles>> write_stills(const World& world,
 
 Result<std::vector<std::filesystem::path>> write_frame(const CameraFrame& frame,
                                                        const std::filesystem::path& folder,
-                                                       const std::string& name) {
+                                                       const std::string& name,
+                                                       const std::vector<std::string>& outputs) {
   GLOAM_TRY_STATUS(make_folder(folder));
   std::vector<std::filesystem::path> written;
   for (const CameraFile& file : kCameraFiles) {
-    if (!file.is_of_each_frame()) continue;
+    const bool is_wanted =
+        outputs.empty() || std::ranges::any_of(outputs, [&file](const std::string& output) {
+          return output == file.output || output == file.channel;
+        });
+    if (!file.is_of_each_frame() || !is_wanted) continue;
     GLOAM_TRY(const std::vector<uint8_t> bytes, encode_frame_file(file, frame));
     if (bytes.empty()) continue;
     written.push_back(folder / fmt::format("{}{}", name, file.suffix));

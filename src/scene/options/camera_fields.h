@@ -51,7 +51,7 @@ void visit_fields(Visitor& v, CameraOptions& o) {
   v("lens", o.lens, FieldRule{});
   v("exposure_time", o.exposure_time, FieldRule{.unit = "s", .min = 0, .max = 100});
   v("readout_time", o.readout_time, FieldRule{.unit = "s", .min = 0, .max = 100});
-  v("outputs", o.outputs, FieldRule{.choices = words(kCameraOutputs)});
+  v("outputs", o.outputs, FieldRule{.choices = words(kCameraOutputNames)});
   v("near", o.near, FieldRule{.unit = "m", .min = 0, .max = kLargestLength});
   v("hide", o.hide, FieldRule{});
   visit_sensing(v, o.sensing);

@@ -13,6 +13,7 @@ void visit_fields(Visitor& v, SimOptions& o) {
   v("timestep", o.timestep, FieldRule{.unit = "s", .min = 0, .max = 1, .open = true});
   v("duration", o.duration, FieldRule{.unit = "s", .min = 0, .max = kLongestTime, .open = true});
   v("seed", o.seed, FieldRule{});
+  v("pace", o.pace, FieldRule{.choices = {"fast", "realtime", "sensors"}});
 }
 
 template <class Visitor>
@@ -31,7 +32,7 @@ void visit_fields(Visitor& v, RenderOptions& o) {
 
 template <class Visitor>
 void visit_fields(Visitor& v, RecordOptions& o) {
-  v("outputs", o.outputs, FieldRule{.choices = words(kRecordOutputs)});
+  v("outputs", o.outputs, FieldRule{.choices = words(kOutputNames)});
   v("mcap", o.mcap, FieldRule{});
   v("topics", o.topics, FieldRule{});
   v("state_rate", o.state_rate,

@@ -9,10 +9,9 @@ namespace gloam {
 Result<CameraChannels> CameraChannels::parse(const std::vector<std::string>& names) {
   CameraChannels channels;
   for (const std::string& name : names) {
-    const CameraChannel* found = find_camera_channel(name);
+    const CameraChannel* found = find_output_channel(name);
     if (found == nullptr) {
-      std::vector<std::string> all;
-      for (const CameraChannel& channel : kCameraChannels) all.emplace_back(channel.name);
+      const std::vector<std::string> all(kCameraOutputNames.begin(), kCameraOutputNames.end());
       return Error{ErrorKind::kInput,
                    fmt::format("there is no camera output '{}'", name),
                    {},

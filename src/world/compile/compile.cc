@@ -8,6 +8,7 @@
 #include "base/memory.h"
 #include "base/text.h"
 #include "geometry/mesh/model_file.h"
+#include "gloam/outputs.h"
 #include "places/generators.h"
 #include "places/writer/place_writer.h"
 #include "scene/adversity.h"
@@ -156,8 +157,16 @@ Status choose_keyframe(const std::string& keyframe, CompiledWorld* world) {
                    : fmt::format("its keyframes have no names: give a number, 0 to {}", count - 1)};
 }
 
-Result<World> compile_scene(const Scene& written, const std::string& keyframe,
-                            const ProgressCallback& callback) {
+// Channels among outputs become the outputs that a recording makes of them.
+void expand_outputs(Scene* scene) {
+  scene->record.outputs = recorded_outputs(scene->record.outputs);
+  for (CameraOptions& camera : scene->cameras)
+    if (camera.outputs) camera.outputs = recorded_outputs(*camera.outputs);
+}
+
+Result<std::shared_ptr<CompiledWorld>> compile_scene(const Scene& written,
+                                                     const std::string& keyframe,
+                                                     const ProgressCallback& callback) {
   install_mujoco_handler();
   GLOAM_TRY_STATUS(validate_scene(written));
   Scene scene = written;
@@ -184,6 +193,7 @@ Result<World> compile_scene(const Scene& written, const std::string& keyframe,
   GLOAM_TRY_STATUS(draw_options(DrawStage::kRest, &scene, &drawn));
   scene.randomize.clear();
   GLOAM_TRY(scene, with_rig_cameras(scene));
+  expand_outputs(&scene);
   const uint64_t place_hash = (place ? place->hash() : 0) ^ objects.hash;
   std::vector<Error> sizes;
   if (place) note_sizes(scene, *place, &sizes);
