@@ -7,6 +7,7 @@
 
 #include "gloam/log_player.h"
 #include "print.h"
+#include "report.h"
 
 namespace gloam::cli {
 namespace {
@@ -53,6 +54,17 @@ void LiveCommand::add_to(CLI::App& app) {
       ->check(CLI::Range(0, 65535));
   app.add_option("--speed", speed, "Simulated seconds per second, where it is paced")
       ->check(positive_number());
+  app.add_option(
+         "--pace", pace,
+         "fast: as fast as possible; realtime: by the wall clock, late sensors lose "
+         "messages; sensors: by the wall clock at most, waits for every sensor that is read")
+      ->check(CLI::IsMember({"fast", "realtime", "sensors"}));
+}
+
+Pace LiveCommand::pace_of(const Scene& scene, Pace usual) const {
+  const std::string& name = pace.empty() ? scene.sim.pace : pace;
+  const Result<Pace> named = pace_named(name);
+  return named.ok() ? *named : usual;
 }
 
 BridgeOptions LiveCommand::options(const BridgeOptions& scene) const {
@@ -66,11 +78,12 @@ BridgeOptions LiveCommand::options(const BridgeOptions& scene) const {
 
 int run_live(LiveRun run, const LiveCommand& command, EndOnInterrupt& starting) {
   Simulation& simulation = run.simulation;
-  simulation.set_pace(Pace::kRealTime, command.speed);
+  simulation.set_pace(run.pace, command.speed);
   std::unique_ptr<ViewServer> page;
   if (command.view) {
     if (command.port) run.view.port = *command.port;
     run.view.speed = command.speed;
+    run.view.pace = run.pace;
     auto started = ViewServer::start(simulation, run.view);
     if (!started.ok()) return fail(started.error());
     page = std::move(*started);
@@ -99,6 +112,8 @@ int run_live(LiveRun run, const LiveCommand& command, EndOnInterrupt& starting) 
   bridges.reset();  // no client changes what the log ends with
   if (page != nullptr) page->stop();
   int code = status.ok() ? 0 : fail(status.error());
+  const SimulationStats stats = simulation.stats();
+  tell("{}", sensor_table(stats.sensors));
   if (log != nullptr) {
     if (const Status finished = log->finish(); !finished.ok()) code = fail(finished.error());
     tell("gloam: {}\n", run.log.file.string());

@@ -17,12 +17,15 @@ struct LiveCommand {
   bool paused = false;           ///< waits for a client to start it
   std::optional<int> port = {};  ///< of the page; without one, of Foxglove
   double speed = 1;
-  bool loop = false;  ///< of a log: it begins again at its end
+  std::string pace = {};  ///< fast | realtime | sensors; "" = the scene's, else the usual one
+  bool loop = false;      ///< of a log: it begins again at its end
 
   /// Adds --view, a flag for each bridge, --paused, --port and --speed.
   void add_to(CLI::App& command);
   /// Whether anything keeps the run alive: a page or a bridge.
   bool any(const BridgeOptions& bridges) const { return view || options(bridges).any(); }
+  /// Pace of the command line, else of the scene, else `usual`.
+  Pace pace_of(const Scene& scene, Pace usual) const;
   /// Bridges of the scene and of the command line.
   BridgeOptions options(const BridgeOptions& scene) const;
 };
@@ -32,6 +35,7 @@ struct LiveRun {
   Simulation& simulation;
   ViewOptions view = {};
   BridgeOptions bridges = {};
+  Pace pace = Pace::kRealTime;
   LogRequest log = {};                  ///< no file = none
   std::optional<double> duration = {};  ///< [s]; empty = until Ctrl-C
 };

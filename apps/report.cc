@@ -10,6 +10,36 @@
 
 namespace gloam::cli {
 
+std::string sensor_table(const std::vector<SensorCost>& sensors) {
+  if (sensors.empty()) return {};
+  std::string table =
+      fmt::format("  {:<32} {:>10} {:>11} {:>9} {:>8} {:>11} {:>11}\n", "stream", "wanted Hz",
+                  "achieved Hz", "messages", "dropped", "ms each", "ms waiting");
+  for (const SensorCost& s : sensors) {
+    const std::string achieved = s.achieved > 0 ? fmt::format("{:.2f}", s.achieved) : "-";
+    table += fmt::format("  {:<32} {:>10.5g} {:>11} {:>9} {:>8} {:>11.3f} {:>11.3f}\n", s.name,
+                         s.rate, achieved, s.messages, s.dropped, s.wall_ms, s.waited_ms);
+  }
+  return table;
+}
+
+namespace {
+
+nlohmann::ordered_json sensors_json(const std::vector<SensorCost>& sensors) {
+  auto list = nlohmann::ordered_json::array();
+  for (const SensorCost& s : sensors)
+    list.push_back({{"name", s.name},
+                    {"rate_hz", s.rate},
+                    {"achieved_hz", s.achieved},
+                    {"messages", s.messages},
+                    {"dropped", s.dropped},
+                    {"wall_ms", s.wall_ms},
+                    {"waited_ms", s.waited_ms}});
+  return list;
+}
+
+}  // namespace
+
 int run_and_report(const World& world, const RunRequest& request, const Globals& globals) {
   return tell_of(run_and_record(world, request, progress_display(globals)), globals);
 }
@@ -30,11 +60,13 @@ int tell_of(const Result<RunReport>& report, const Globals& globals) {
         {"frames", report->frames},
         {"written", report->written},
         {"notes", report->notes},
+        {"sensors", sensors_json(report->sensors)},
         {"error", report->status.ok() ? "" : report->status.error().to_string()}};
     put_json(json);
   } else {
     say("simulated {:.3f} s in {:.1f} s ({:.2f} x real time), {} steps, state hash {:016x}\n",
         report->sim_time, report->wall_time, factor, report->steps, report->hash);
+    say("{}", sensor_table(report->sensors));
     if (!report->out.empty()) {
       const std::string pictures =
           report->frames > 0 ? fmt::format(" ({} pictures)", report->frames) : std::string();

@@ -40,6 +40,7 @@ int keep_live(const World& world, const RunRequest& request, const RunCommand& c
     run.view.camera = scene.cameras.front().name;  // the free camera may stand outside the walls
   }
   run.bridges = command.live.options(scene.bridge);
+  run.pace = request.simulation.pace;
   run.log = request.log;
   run.duration = command.options.duration;
   return run_live(std::move(run), command.live, starting);
@@ -69,7 +70,8 @@ int run_world(const World& world, RunRequest request, const RunCommand& command,
     request.log.file = request.out / "run.mcap";
   request.overwrite = command.overwrite;
   request.cameras = command.options.cameras;
-  request.simulation.pace = command.realtime || is_live ? Pace::kRealTime : Pace::kFast;
+  request.simulation.pace = command.live.pace_of(
+      scene, command.realtime || is_live ? Pace::kRealTime : Pace::kFast);
   request.simulation.speed = command.live.speed;
   if (!command.options.resolution.empty()) {
     if (const Status status =
@@ -141,7 +143,7 @@ void add_run(CLI::App& app, Globals& globals, Action& action) {
   sub->add_flag("--mcap", command->mcap, "Write a log, too: run.mcap in the results folder");
   sub->add_flag("--overwrite", command->overwrite, "Replace an existing results folder");
   sub->add_flag("--realtime", command->realtime,
-                "Pace by the wall clock; default: as fast as possible");
+                "Short for --pace realtime; default: as fast as possible");
   command->live.add_to(*sub);
   sub->add_option("--at", command->at,
                   "FILE is a log: go on from this time of it [s], for --duration more")
@@ -150,7 +152,7 @@ void add_run(CLI::App& app, Globals& globals, Action& action) {
       "Examples:\n  gloam run examples/demo.toml --duration 3\n  gloam run robot.xml --out "
       "results/robot --camera front\n  gloam run examples/lidar.toml --duration 1 --output "
       "lidar,sensors,depth_exr\n  gloam run robot.urdf --view\n  gloam run examples/demo.toml "
-      "--ros2 --view\n  gloam run run.mcap --at 2.5 "
+      "--ros2 --view\n  gloam run examples/demo.toml --zmq --pace sensors\n  gloam run run.mcap --at 2.5 "
       "--duration 3 --out results/branch");
   sub->callback([&globals, &action, command] {
     action = [&globals, command] { return run(*command, globals); };

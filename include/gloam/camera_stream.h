@@ -26,6 +26,7 @@ struct CameraRequest {
   std::optional<Pose> X_WC = {};  ///< of camera "free": where it stands at first
   bool required =
       false;  ///< the simulation waits for this camera; else frames are dropped, oldest first
+  bool is_view = false;  ///< a picture for a viewer, for which Pace::kSensors does not wait
   EndCallback on_end = {};
 };
 

@@ -3,9 +3,12 @@
 
 #include <cstdint>
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include "gloam/handle.h"
 #include "gloam/physics_memory.h"
+#include "gloam/result.h"
 #include "gloam/types.h"
 
 namespace gloam {
@@ -14,14 +17,34 @@ enum class Pace {
   kFast,      ///< as fast as possible: waits for required consumers
   kLockstep,  ///< as fast as possible, but only when told to: step(), run_until()
   kRealTime,  ///< paced by the wall clock times `speed`; late consumers lose frames
+  /// As kRealTime at most, and slower where sensors need it: waits for every open camera, LiDAR,
+  /// sensor and topic, so that none of their messages is lost. Views (CameraRequest::is_view) lose
+  /// frames as in kRealTime. SimulationStats::realtime_factor tells the speed reached.
+  kSensors,
 };
+const char* to_string(Pace pace);  ///< "fast", "lockstep", "realtime", "sensors"
+/// Error: no such pace, with the nearest name.
+Result<Pace> pace_named(std::string_view name);
+/// Whether the simulation waits for its recorders and sensors, so that nothing is lost.
+inline bool waits_for_sensors(Pace pace) { return pace == Pace::kFast || pace == Pace::kSensors; }
 
 struct SimulationOptions {
   uint64_t seed = 1;
   double timestep = 0;  ///< [s]; 0 = the model's own
   Pace pace = Pace::kFast;
-  double speed = 1;          ///< of Pace::kRealTime, > 0
+  double speed = 1;          ///< of Pace::kRealTime and Pace::kSensors, > 0
   DataMaker make_data = {};  ///< empty = the simulation makes its own
+};
+
+/// Cost and rate of one stream of a simulation since it was opened.
+struct SensorCost {
+  std::string name;     ///< "camera 'front'", "lidar 'roof'"
+  double rate = 0;      ///< messages that the scene asks for [Hz of simulation time]
+  double achieved = 0;  ///< messages that were made [Hz of simulation time]; 0 = fewer than two
+  int64_t messages = 0;
+  int64_t dropped = 0;   ///< instants that were lost because the stream was late
+  double wall_ms = 0;    ///< mean wall time to make a message and hand it on [ms]
+  double waited_ms = 0;  ///< mean wall time that it waited for other sensors' rendering [ms]
 };
 
 struct SimulationStats {
@@ -32,6 +55,9 @@ struct SimulationStats {
   int64_t dropped_snapshots = 0;
   int64_t commands_applied = 0;  ///< posted ones, over all runs
   int64_t warnings = 0;          ///< MuJoCo's, all types
+  Pace pace = Pace::kFast;
+  /// Streams that are or were open, in the order in which they were opened.
+  std::vector<SensorCost> sensors = {};
 };
 
 /// A body under a pixel, for dragging.

@@ -25,6 +25,7 @@ struct ViewOptions {
   RenderOptions render = {.tier = "direct", .spp = 1, .denoise = false};
   int width = 0, height = 0;    ///< [px]; 0 = the camera's own
   double rate = 20;             ///< pictures per second of simulation time, (0, 240]
+  Pace pace = Pace::kRealTime;  ///< that the page sets
   double speed = 1;             ///< simulated seconds per second, 0.001 … 100
   LogPlayer* player = nullptr;  ///< whose simulation it is: the page goes about in time
 };
@@ -33,7 +34,7 @@ struct ViewOptions {
 /// LogPlayer must live longer. Thread-safe.
 class ViewServer {
  public:
-  /// Starts to listen and sets the pace to real time; whether the simulation runs or is
+  /// Starts to listen and sets the pace; whether the simulation runs or is
   /// paused stays as it is. Errors: usage (host is not loopback, a number out of range), I/O (port
   /// in use), what open_camera says.
   static Result<std::unique_ptr<ViewServer>> start(Simulation& simulation,

@@ -22,7 +22,7 @@ from .progress import ProgressLike
 from .scene import Scene, as_scene
 from .world import World
 
-Pace = Literal["lockstep", "fast", "realtime"]
+Pace = Literal["lockstep", "fast", "realtime", "sensors"]
 _alive: weakref.WeakSet[Simulation] = weakref.WeakSet()
 
 
@@ -43,7 +43,7 @@ class Checkpoint:
 class Simulation:
     """A World that runs. It stands still until it is stepped or told to run().
 
-    `pace`: of run(): "lockstep" and "fast" go as fast as they can, "realtime" by the wall clock times `speed`. `timestep` [s]: None = the model's.
+    `pace`: of run(): "lockstep" and "fast" go as fast as they can, "realtime" by the wall clock times `speed`, "sensors" as "realtime" but slower where open sensors need it, none of whose messages is lost; `stats` has the speed reached and what each sensor costs. `timestep` [s]: None = the model's.
     What is written into live arrays between two steps counts as input of the next step, after controllers, and is in logs.
     """
 

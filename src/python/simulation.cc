@@ -19,15 +19,7 @@ std::shared_ptr<Run> create(const World& world, uint64_t seed, double timestep,
   options.seed = seed;
   options.timestep = timestep;
   options.speed = speed;
-  if (pace == "lockstep") {
-    options.pace = Pace::kLockstep;
-  } else if (pace == "fast") {
-    options.pace = Pace::kFast;
-  } else if (pace == "realtime") {
-    options.pace = Pace::kRealTime;
-  } else {
-    raise("UsageError", "there is no pace '" + pace + "'", "one of: lockstep, fast, realtime");
-  }
+  options.pace = take(pace_named(pace));
   if (!make_data.is_none()) options.make_data = data_maker(make_data);
   auto made = without_gil([&] { return Simulation::create(world, options); });
   return {new Run(take(std::move(made)), std::move(make_data)),
@@ -115,6 +107,22 @@ void bind_commands(nb::class_<Run>& c) {
       nb::arg("field"), nb::arg("first"), nb::arg("values"), nb::arg("step") = kNext);
 }
 
+nb::list sensor_dicts(const std::vector<SensorCost>& sensors) {
+  nb::list list;
+  for (const SensorCost& sensor : sensors) {
+    nb::dict made;
+    made["name"] = sensor.name;
+    made["rate"] = sensor.rate;
+    made["achieved"] = sensor.achieved;
+    made["messages"] = sensor.messages;
+    made["dropped"] = sensor.dropped;
+    made["wall_ms"] = sensor.wall_ms;
+    made["waited_ms"] = sensor.waited_ms;
+    list.append(made);
+  }
+  return list;
+}
+
 nb::dict stats_dict(Run& run) {
   Simulation& simulation = run.simulation();
   const SimulationStats stats = without_gil([&] { return simulation.stats(); });
@@ -126,6 +134,8 @@ nb::dict stats_dict(Run& run) {
   made["dropped_snapshots"] = stats.dropped_snapshots;
   made["commands_applied"] = stats.commands_applied;
   made["warnings"] = stats.warnings;
+  made["pace"] = to_string(stats.pace);
+  made["sensors"] = sensor_dicts(stats.sensors);
   return made;
 }
 
@@ -237,9 +247,7 @@ void bind_simulation(nb::module_& m) {
       .def("set_pace",
            [](Run& r, const std::string& pace, double speed) {
              if (!(speed > 0)) raise("UsageError", "a speed is above 0");
-             const Pace wanted = pace == "realtime"   ? Pace::kRealTime
-                                 : pace == "lockstep" ? Pace::kLockstep
-                                                      : Pace::kFast;
+             const Pace wanted = take(pace_named(pace));
              Simulation& simulation = r.simulation();
              without_gil([&] { simulation.set_pace(wanted, speed); });
            })

@@ -10,6 +10,8 @@
 
 namespace gloam {
 
+class RenderTurns;
+
 struct LidarBeam {
   Vec3f d;          ///< unit, in the sensor's frame L: x ahead, y to the left, z up
   float time = 0;   ///< 0 … 1 between the keys that the renderer was updated to
@@ -23,6 +25,7 @@ struct LidarView {
   uint64_t seed = 1;
   uint64_t scan = 0;  ///< draws are keyed (seed, scan, beam)
   std::span<const LidarBeam> beams;
+  RenderTurns* turns = nullptr;  ///< as RenderSettings::turns
 };
 
 /// Even motion from one pose to another; L turns by less than half a turn.

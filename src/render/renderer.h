@@ -18,6 +18,7 @@
 namespace gloam {
 
 struct LidarView;    // render/lidar_view.h
+class RenderTurns;   // render/turns.h
 struct LidarReturn;  // render/kernel/lidar/lidar_detect.h
 
 /// A camera, where it is, and when it sees. C looks along -Z with +Y up. Times are those of the
@@ -72,6 +73,10 @@ struct RenderSettings {
   /// Told how much of the picture is done, 0..1, about ten times a second, from the threads that
   /// render but never by two at once. Returns false to end the render: the film then is unfinished.
   std::function<bool(double done)> progress = {};
+  /// The caller's turn at this renderer, which render() passes on, between two tiles, to sensors
+  /// that should have it first. The keys of update() and `previous` must then live until render()
+  /// returns. null = nobody else uses the renderer.
+  RenderTurns* turns = nullptr;
 };
 
 /// Samples of a pixel before its error is looked at.

@@ -78,10 +78,10 @@ class ComparedScene {
     if (index == 0) GLOAM_TRY_STATUS(solver_->solve(now, before_));
     GLOAM_TRY_STATUS(solver_->solve(now, poses_));
     if (meter_ != nullptr) camera_->set_ev100(meter_->ev100_at(step));
-    const auto frame = camera_->capture(*shared_->renderer, shared_->mutex, poses_, before_, index);
+    const auto frame = camera_->capture(*shared_->renderer, shared_->turns, poses_, before_, index);
     if (frame == nullptr) return Error{ErrorKind::kInterrupted, "interrupted"};
     const std::vector<PoseFrame> keys{poses_, poses_};
-    const auto scan = lidar_->scan(*shared_->renderer, shared_->mutex, keys, index);
+    const auto scan = lidar_->scan(*shared_->renderer, shared_->turns, keys, index);
     std::swap(poses_, before_);
     const Vec3f eye = to_affine(from_origin(frame->X_WC, shared_->description.origin)).p;
     ComparisonResult& sum = seen->result;

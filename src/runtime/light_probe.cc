@@ -14,7 +14,7 @@ std::vector<double> LightProbe::illuminance(const Snapshot& snapshot,
                                             const std::vector<Vec3>& places) {
   std::vector<double> out(places.size());
   if (!solver_->solve(snapshot, poses_).ok()) return out;
-  const std::lock_guard lock(shared_->mutex);
+  const std::lock_guard lock(shared_->turns);
   shared_->renderer->update(poses_, poses_, poses_);
   for (size_t i = 0; i < out.size(); ++i) {
     const Vec3f p = to_vec3f(from_origin(places[i], shared_->description.origin));

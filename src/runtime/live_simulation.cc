@@ -67,7 +67,7 @@ Result<std::unique_ptr<LiveSimulation>> LiveSimulation::create(const World& worl
   }
   // Exposure goes on from step 0, whether or not anyone opens the camera.
   if (how.metering == Metering::kAlways)
-    GLOAM_TRY_STATUS(live->meters_.open(*live->simulator_, live->renderers_));
+    GLOAM_TRY_STATUS(live->meters_.open(live->stream_context()));
   // The thread starts with the first call that moves time: hooks, controllers and cameras come
   // before.
   live->simulator_->start(0);
@@ -84,7 +84,7 @@ Status LiveSimulation::recompile(const World& world) {
   renderers_.keep_only(simulator_->world());
   GLOAM_TRY_STATUS(status);
   send_latched();
-  return metering_ == Metering::kAlways ? meters_.open(*simulator_, renderers_) : Status();
+  return metering_ == Metering::kAlways ? meters_.open(stream_context()) : Status();
 }
 
 Result<Checkpoint> LiveSimulation::checkpoint() {
@@ -102,7 +102,7 @@ Status LiveSimulation::restore(const Checkpoint& checkpoint) {
   GLOAM_TRY_STATUS(status);
   restart_speed_clock();
   if (is_other) send_latched();
-  return metering_ == Metering::kAlways ? meters_.open(*simulator_, renderers_) : Status();
+  return metering_ == Metering::kAlways ? meters_.open(stream_context()) : Status();
 }
 
 void LiveSimulation::add_latched(std::weak_ptr<LatchedTopics> topics) {
@@ -194,7 +194,8 @@ bool LiveSimulation::repeats_a_reset() {
   constexpr double kMoment = 0.01;  // [s]
   const std::lock_guard lock(clock_mutex_);
   const double now = wall_seconds();
-  if (pace_ == Pace::kRealTime && !paused_ && now - last_reset_ < kMoment) return true;
+  const bool paced = pace_ == Pace::kRealTime || pace_ == Pace::kSensors;
+  if (paced && !paused_ && now - last_reset_ < kMoment) return true;
   last_reset_ = now;
   return false;
 }
@@ -216,6 +217,8 @@ SimulationStats LiveSimulation::stats() const {
   stats.hash = snapshot.hash();
   stats.commands_applied = counters.commands_applied;
   stats.dropped_snapshots = counters.snapshots_dropped;
+  stats.pace = pace_;
+  stats.sensors = costs_.list();
   stats.warnings = std::accumulate(counters.warnings.begin(), counters.warnings.end(), int64_t{0});
   const std::lock_guard lock(clock_mutex_);
   const double wall = wall_seconds() - clock_wall_;
@@ -232,7 +235,7 @@ Status LiveSimulation::set_step_hook(std::function<void(const mjModel_*, mjData_
 
 Result<std::unique_ptr<LiveCamera>> LiveSimulation::open_live_camera(const CameraRequest& request,
                                                                      FrameCallback on_frame) {
-  return LiveCamera::open(*simulator_, renderers_, request, seed_, std::move(on_frame), meters_);
+  return LiveCamera::open(stream_context(), request, std::move(on_frame), meters_);
 }
 
 Result<std::unique_ptr<SensorStream>> LiveSimulation::open_sensor(const SensorRequest& request,
@@ -255,7 +258,7 @@ Result<std::unique_ptr<LiveSensors>> LiveSimulation::open_all_sensors(bool requi
 
 Result<std::unique_ptr<LiveSensors>> LiveSimulation::open_live_sensors(LiveSensorsRequest request,
                                                                        SensorCallback on_message) {
-  return LiveSensors::open(*simulator_, seed_, probe_sources(), std::move(request),
+  return LiveSensors::open(stream_context(), probe_sources(), std::move(request),
                            std::move(on_message));
 }
 
@@ -264,7 +267,7 @@ ProbeSources LiveSimulation::probe_sources() {
   sources.renderer =
       [this](const std::shared_ptr<const CompiledWorld>& world) -> Result<ProbeRenderer> {
     GLOAM_TRY(const std::shared_ptr<SharedRenderer> shared, renderers_.of(world));
-    return ProbeRenderer{shared, &shared->description, shared->renderer.get(), &shared->mutex};
+    return ProbeRenderer{shared, &shared->description, shared->renderer.get(), &shared->turns};
   };
   sources.metered_ev100 = [this](const std::string& camera, const Snapshot& now) -> Result<double> {
     const std::shared_ptr<ExposureMeter> meter = meters_.of(camera, *now.data().world);
@@ -283,7 +286,7 @@ Result<std::unique_ptr<CameraStream>> LiveSimulation::open_camera(const CameraRe
 
 Result<std::unique_ptr<LiveLidar>> LiveSimulation::open_live_lidar(const LidarRequest& request,
                                                                    ScanCallback on_scan) {
-  return LiveLidar::open(*simulator_, renderers_, request, seed_, std::move(on_scan));
+  return LiveLidar::open(stream_context(), request, std::move(on_scan));
 }
 
 Result<std::unique_ptr<LidarStream>> LiveSimulation::open_lidar(const LidarRequest& request,
@@ -294,7 +297,7 @@ Result<std::unique_ptr<LidarStream>> LiveSimulation::open_lidar(const LidarReque
 
 Result<std::unique_ptr<SnapshotStream>> LiveSimulation::open_snapshots(
     const SnapshotRequest& request, SnapshotCallback on_snapshot) {
-  GLOAM_TRY(auto live, LiveSnapshots::open(*simulator_, request, std::move(on_snapshot)));
+  GLOAM_TRY(auto live, LiveSnapshots::open(stream_context(), request, std::move(on_snapshot)));
   return std::unique_ptr<SnapshotStream>(std::move(live));
 }
 

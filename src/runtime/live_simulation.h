@@ -109,6 +109,9 @@ class LiveSimulation final : public Simulation {
                                                          SensorCallback on_message);
   /// All sensors of the model in one stream.
   Result<std::unique_ptr<LiveSensors>> open_all_sensors(bool required, SensorCallback on_message);
+  /// Parts for its streams, which end before it.
+  StreamContext stream_context() { return {*simulator_, renderers_, costs_, seed_}; }
+  std::vector<SensorCost> sensor_costs() const { return costs_.list(); }
   const ExposureMeters& meters() const { return meters_; }
   /// Sources of its probes' readings; valid while it lives.
   ProbeSources probe_sources();
@@ -117,7 +120,7 @@ class LiveSimulation final : public Simulation {
 
  private:
   LiveSimulation(uint64_t seed, bool required_meters, Metering metering)
-      : seed_(seed), metering_(metering), meters_(seed, required_meters) {}
+      : seed_(seed), metering_(metering), meters_(required_meters) {}
   void restart_speed_clock();
   bool repeats_a_reset();
   void send_latched();
@@ -128,6 +131,7 @@ class LiveSimulation final : public Simulation {
   const Metering metering_;
   std::unique_ptr<Simulator> simulator_;
   SharedRenderers renderers_;
+  SensorCosts costs_;
   std::mutex recompile_mutex_;  // one at a time
   ExposureMeters meters_;
   RobotClaims claims_;

@@ -10,7 +10,7 @@ namespace gloam {
 
 Result<PickResult> pick_at(SharedRenderer& shared, const PoseFrame& poses, const CameraFrame& frame,
                            double u, double v) {
-  const std::lock_guard lock(shared.mutex);
+  const std::lock_guard lock(shared.turns);
   // A picture of one pixel whose centre is (u, v).
   CameraView view;
   view.X_WC_open = view.X_WC_previous =

@@ -119,7 +119,7 @@ Result<std::shared_ptr<const CameraFrame>> SceneRenderer::render(std::span<const
   PoseFrame& now = s.keys.front();
   const bool follows =
       camera->has_previous && camera->previous.run == now.run && camera->previous.step <= now.step;
-  auto frame = camera->sensor->capture(*s.shared->renderer, s.shared->mutex, keys,
+  auto frame = camera->sensor->capture(*s.shared->renderer, s.shared->turns, keys,
                                        follows ? camera->previous : now, frame_index);
   camera->previous = now;
   camera->has_previous = true;
@@ -134,7 +134,7 @@ Result<std::shared_ptr<const LidarScan>> SceneRenderer::scan(std::span<const Sna
     return Error{ErrorKind::kUsage, "a scan needs the Snapshots of its begin and its end"};
   GLOAM_TRY_STATUS(s.solve(sweep));
   GLOAM_TRY(LidarSensor* const lidar, s.lidar(request.lidar));
-  return lidar->scan(*s.shared->renderer, s.shared->mutex, s.keys, scan_index);
+  return lidar->scan(*s.shared->renderer, s.shared->turns, s.keys, scan_index);
 }
 
 }  // namespace gloam

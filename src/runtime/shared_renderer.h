@@ -9,6 +9,7 @@
 
 #include "gloam/result.h"
 #include "render/renderer.h"
+#include "render/turns.h"
 #include "sensors/event/event_track.h"
 #include "world/render_description.h"
 #include "world/world.h"
@@ -19,7 +20,7 @@ struct SharedRenderer {
   std::shared_ptr<const CompiledWorld> world;
   RenderDescription description;
   std::unique_ptr<Renderer> renderer;
-  std::mutex mutex;  ///< held while `renderer` works
+  RenderTurns turns;  ///< of the sensors that `renderer` works for
   EventTracks events;
 
   static Result<std::shared_ptr<SharedRenderer>> create(std::shared_ptr<const CompiledWorld> world);

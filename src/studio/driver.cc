@@ -207,7 +207,7 @@ void Driver::do_message(int64_t client, const StepMessage& message) {
 }
 
 void Driver::do_message(int64_t, const SpeedMessage& message) {
-  simulation_.set_pace(Pace::kRealTime, message.value);
+  simulation_.set_pace(options_.pace, message.value);
   speed_ = message.value;
   const std::lock_guard lock(mutex_);
   report_.speed = message.value;
@@ -336,7 +336,8 @@ Status Driver::open_stream(double scale) {
                         .rate = {std::llround(options_.rate * 1000), 1000},
                         .width = coarse ? scaled(full_width_) : options_.width,
                         .height = coarse ? scaled(full_height_) : options_.height,
-                        .render = options_.render};
+                        .render = options_.render,
+                        .is_view = true};
   opened_scale_ = coarse ? scale : 1;
   is_preview_ = publisher_.newest() == nullptr && make_preview(simulation_.world(), &request);
   opened_at_ = publisher_.sequence();

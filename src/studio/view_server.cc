@@ -60,7 +60,7 @@ class ViewServer::Impl : public WebEvents {
   Status start() {
     GLOAM_TRY_STATUS(web_.listen());
     GLOAM_TRY_STATUS(driver_.start());
-    simulation_.set_pace(Pace::kRealTime, options_.speed);
+    simulation_.set_pace(options_.pace, options_.speed);
     publisher_.start();
     return {};
   }

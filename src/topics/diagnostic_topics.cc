@@ -18,6 +18,8 @@ using diagnostic_msgs::DiagnosticStatus;
 constexpr Rational kDiagnosticRate = {1, 1};  // [Hz]
 // Slower than this fraction of the wall clock is worth a warning.
 constexpr double kLeastRealtime = 0.95;
+// A sensor with a smaller share of its rate is worth one, too.
+constexpr double kLeastRate = 0.9;
 // By mjtWarning.
 constexpr const char* kWarningNames[] = {"inertia",      "contacts_full", "constraints_full",
                                          "bad_position", "bad_velocity",  "bad_acceleration",
@@ -56,6 +58,20 @@ Status encode_physics(const TopicInfo& topic, TopicInstant& at, MessageBytes* ou
   return {};
 }
 
+DiagnosticStatus sensor_status(const SensorCost& sensor) {
+  std::string trouble;
+  if (sensor.achieved > 0 && sensor.achieved < kLeastRate * sensor.rate)
+    trouble = fmt::format("{:.3g} of {:.3g} Hz", sensor.achieved, sensor.rate);
+  DiagnosticStatus status = status_of(("gloam: " + sensor.name).c_str(), std::move(trouble));
+  status.values = {{"rate_hz", fmt::format("{:.4g}", sensor.rate)},
+                   {"achieved_hz", fmt::format("{:.4g}", sensor.achieved)},
+                   {"messages", fmt::format("{}", sensor.messages)},
+                   {"dropped", fmt::format("{}", sensor.dropped)},
+                   {"wall_ms", fmt::format("{:.4g}", sensor.wall_ms)},
+                   {"waited_ms", fmt::format("{:.4g}", sensor.waited_ms)}};
+  return status;
+}
+
 Status encode_performance(const TopicInfo& topic, TopicInstant& at, MessageBytes* out) {
   const SimulationStats stats = at.performance();
   std::string trouble;
@@ -67,10 +83,12 @@ Status encode_performance(const TopicInfo& topic, TopicInstant& at, MessageBytes
       status_of("gloam: speed", std::move(trouble)),
       status_of("gloam: streams",
                 stats.dropped_snapshots > 0 ? "readers are too slow: instants were dropped" : "")};
-  message.status[0].values = {{"realtime_factor", fmt::format("{:.4g}", stats.realtime_factor)},
+  message.status[0].values = {{"pace", to_string(stats.pace)},
+                              {"realtime_factor", fmt::format("{:.4g}", stats.realtime_factor)},
                               {"step", fmt::format("{}", stats.step)}};
   message.status[1].values = {{"dropped_snapshots", fmt::format("{}", stats.dropped_snapshots)},
                               {"commands_applied", fmt::format("{}", stats.commands_applied)}};
+  for (const SensorCost& sensor : stats.sensors) message.status.push_back(sensor_status(sensor));
   encode(message, out);
   return {};
 }
@@ -88,7 +106,8 @@ void add_diagnostic_topics(const TopicSource&, TopicTable* table) {
                       std::move(encode)});
   };
   add("/diagnostics", "physics", encode_physics);
-  add("/diagnostics/performance", "speed by the wall clock, lost messages", encode_performance);
+  add("/diagnostics/performance", "speed by the wall clock, lost messages, cost of each sensor",
+      encode_performance);
   table->back().info.is_logged = false;
 }
 

@@ -17,6 +17,9 @@ struct SimOptions {
   std::optional<double> timestep = {};  ///< [s]; empty = the model's own
   double duration = 10;                 ///< [s] of simulation time, > 0
   uint64_t seed = 1;                    ///< seed of everything random
+  /// fast | realtime | sensors (docs/sensors.md), where the command names none; empty = realtime
+  /// for live runs, fast for others.
+  std::string pace = {};
   SourceLoc loc = {};
 };
 

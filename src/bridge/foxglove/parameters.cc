@@ -30,6 +30,11 @@ Parameters::Parameters(Operator& operations, Counters& counters)
                             if (!value.is_number()) return bad_value("is a number");
                             return operations.set_speed(value.get<double>());
                           }};
+  parameters_["pace"] = {"", [&operations] { return json(to_string(operations.pace())); },
+                         [&operations](const json& value) -> Status {
+                           if (!value.is_string()) return bad_value("is a text");
+                           return operations.set_pace(value.get<std::string>());
+                         }};
   parameters_["scene"] = {
       "", [&simulation] { return json(simulation.world().scene().file.filename().string()); }, {}};
   parameters_["step_rate"] = {

@@ -75,6 +75,7 @@ Result<std::shared_ptr<const CameraFrame>> Operator::picture(CameraRequest reque
   };
   const auto waiting = std::make_shared<Waiting>();
   request.required = false;
+  request.is_view = true;
   request.on_end = [waiting](const Error& error) {
     const std::lock_guard lock(waiting->mutex);
     waiting->error = error;

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <numeric>
 
-#include "base/parallel.h"
 #include "render/cpu/path/exact_channels.h"
 #include "render/cpu/path/watch.h"
 
@@ -19,8 +18,8 @@ int64_t scattered(int64_t i, int64_t tiles) {
 }
 
 template <class F>
-void for_tiles(int64_t count, const F& f) {
-  parallel_for("render tiles", count, [&](int64_t i) {
+void for_tiles(const Job& job, int64_t count, const F& f) {
+  job.slices->run("render tiles", count, [&](int64_t i) {
     const FlushDenormals flush;
     f(i);
   });
@@ -37,12 +36,10 @@ int64_t CpuStages::begin(const Film& film) {
 RenderStats CpuStages::render(const Job& all) {
   const RenderSettings& settings = all.settings;
   const bool adaptive = settings.error > 0;
-  const int64_t count = begin(*all.film);
-  RenderWatch watch(settings.progress, count);
-  Job job = all;
-  job.watch = &watch;
+  const int64_t count = begin(*job.film);
   const AdaptivePlan plan = adaptive ? look(job) : AdaptivePlan();
-  for_tiles(count, [&](int64_t i) {
+  RenderWatch watch(settings.progress, count, *job.slices);
+  for_tiles(job, count, [&](int64_t i) {
     if (watch.stopped()) return;
     const int64_t tile = settings.progress ? scattered(i, count) : i;
     render_tile(job, tile, plan);
@@ -59,14 +56,14 @@ RenderStats CpuStages::render(const Job& all) {
 }
 
 void CpuStages::render_exact_channels(const Job& job) {
-  for_tiles(begin(*job.film),
+  for_tiles(job, begin(*job.film),
             [&](int64_t tile) { render_channels(job, x_of(tile), y_of(tile), nullptr); });
 }
 
 AdaptivePlan CpuStages::look(const Job& job) {
   std::vector<double> deviations(tiles_.size());
   std::vector<int> pixels(tiles_.size());
-  for_tiles(static_cast<int64_t>(tiles_.size()), [&](int64_t tile) {
+  for_tiles(job, static_cast<int64_t>(tiles_.size()), [&](int64_t tile) {
     const auto i = static_cast<size_t>(tile);
     deviations[i] = look_adaptive(job, x_of(tile), y_of(tile), &tiles_[i]);
     pixels[i] = std::min(kTile, job.film->width - x_of(tile)) *

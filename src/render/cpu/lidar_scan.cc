@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "base/check.h"
-#include "base/parallel.h"
 #include "render/cpu/path/tile.h"
 #include "render/kernel/lidar/lidar.h"
 
@@ -55,7 +54,7 @@ void scan_packet(const ScanJob& job, const LidarBeam* beams, int count, LidarRet
 }  // namespace
 
 void scan_beams(const SceneView& scene, const CpuTracer& tracer, const LidarView& view,
-                std::span<LidarReturn> returns) {
+                RenderSlices* slices, std::span<LidarReturn> returns) {
   const LidarOptics& optics = view.optics;
   GLOAM_CHECK(optics.footprint_rays >= 1 && optics.footprint_rays <= kMostFootprintRays &&
                   optics.most_returns >= 1 && optics.most_returns <= kMostLidarReturns,
@@ -71,16 +70,16 @@ void scan_beams(const SceneView& scene, const CpuTracer& tracer, const LidarView
                     footprint_points(optics.footprint_rays),
                     !scene.media.volumes.empty()};
   const auto beams = static_cast<int64_t>(view.beams.size());
-  parallel_for_range("lidar beams", (beams + kLanes - 1) / kLanes, 16,
-                     [&](int64_t begin, int64_t end) {
-                       const FlushDenormals flush;
-                       for (int64_t packet = begin; packet < end; ++packet) {
-                         const int64_t first = packet * kLanes;
-                         scan_packet(job, &view.beams[static_cast<size_t>(first)],
-                                     static_cast<int>(std::min<int64_t>(kLanes, beams - first)),
-                                     &returns[static_cast<size_t>(first * optics.most_returns)]);
-                       }
-                     });
+  constexpr int64_t kTask = int64_t{16} * kLanes;  // beams
+  slices->run("lidar beams", (beams + kTask - 1) / kTask, [&](int64_t task) {
+    const FlushDenormals flush;
+    const int64_t end = std::min((task + 1) * kTask, beams);
+    for (int64_t first = task * kTask; first < end; first += kLanes) {
+      scan_packet(job, &view.beams[static_cast<size_t>(first)],
+                  static_cast<int>(std::min<int64_t>(kLanes, end - first)),
+                  &returns[static_cast<size_t>(first * optics.most_returns)]);
+    }
+  });
 }
 
 }  // namespace gloam

@@ -5,11 +5,12 @@
 
 #include "render/cpu/tracer/cpu_tracer.h"
 #include "render/lidar_view.h"
+#include "render/slices.h"
 
 namespace gloam {
 
 /// `returns`: view.optics.most_returns of each beam, in the order of the beams.
 void scan_beams(const SceneView& scene, const CpuTracer& tracer, const LidarView& view,
-                std::span<LidarReturn> returns);
+                RenderSlices* slices, std::span<LidarReturn> returns);
 
 }  // namespace gloam

@@ -110,7 +110,7 @@ Status LogRecorder::open_streams(const std::vector<TopicInfo>& outputs) {
       .rate = request_.state_rate, .required = request_.required, .capacity = 256};
   if (states.rate.value() > step_rate.value()) states.rate = step_rate;
   GLOAM_TRY(states_, LiveSnapshots::open(
-                         simulation_.simulator(), states,
+                         simulation_.stream_context(), states,
                          [this](const Snapshot& now) { take(now); }, {}, kBatch));
   return {};
 }

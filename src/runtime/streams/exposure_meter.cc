@@ -43,18 +43,20 @@ Result<SensorTiming> timing_of(const CameraOptions& camera, Rational timestep, u
 
 }  // namespace
 
-Result<std::unique_ptr<ExposureMeter>> ExposureMeter::open(Simulator& simulator,
-                                                           SharedRenderers& renderers,
+Result<std::unique_ptr<ExposureMeter>> ExposureMeter::open(const StreamContext& context,
                                                            const CameraOptions& camera,
-                                                           uint64_t seed, bool required) {
-  GLOAM_TRY(const SensorTiming timing, timing_of(camera, simulator.timestep(), seed));
-  std::unique_ptr<ExposureMeter> meter(
-      new ExposureMeter(simulator, renderers, camera, seed, timing, required));
+                                                           bool required) {
+  Simulator& simulator = context.simulator;
+  GLOAM_TRY(const SensorTiming timing, timing_of(camera, simulator.timestep(), context.seed));
+  std::unique_ptr<ExposureMeter> meter(new ExposureMeter(context, camera, timing, required));
   GLOAM_TRY_STATUS(meter->follow(simulator.world()));
-  GLOAM_TRY(
-      auto queue,
-      simulator.subscribe(
-          {.rate = camera.rate, .due = due_steps(timing), .required = required, .capacity = 2}));
+  GLOAM_TRY(auto queue, simulator.subscribe({.rate = camera.rate,
+                                             .due = due_steps(timing),
+                                             .required = required,
+                                             .sensor = true,
+                                             .capacity = 2}));
+  meter->account_ =
+      context.costs.open(fmt::format("exposure of camera '{}'", camera.name), camera.rate.value());
   // Between two of its instants it begins with the present one: no picture waits for the next,
   // which the simulation may not reach before that picture is made.
   if (const Snapshot now = simulator.latest(); meter->instant_of(now.step()) < now.step())
@@ -74,7 +76,9 @@ Result<std::unique_ptr<ExposureMeter>> ExposureMeter::open(Simulator& simulator,
                               if (why.kind == ErrorKind::kInterrupted) return;
                               log_error("the exposure meter of camera '{}' stopped: {}", name,
                                         why.to_string());
-                            }});
+                            },
+                        .account = meter->account_,
+                        .waited = [raw] { return raw->probe_->waited(); }});
   return meter;
 }
 
@@ -106,7 +110,9 @@ Status ExposureMeter::take(const Snapshot& snapshot) {
       return Error{ErrorKind::kInterrupted, "another meter is open for this World"};
     GLOAM_TRY_STATUS(follow(world));
   }
-  return meter(snapshot);
+  GLOAM_TRY_STATUS(meter(snapshot));
+  account_->add_message(snapshot.time());
+  return {};
 }
 
 int64_t ExposureMeter::instant_of(int64_t step) const {
@@ -115,7 +121,7 @@ int64_t ExposureMeter::instant_of(int64_t step) const {
 
 Status ExposureMeter::meter(const Snapshot& snapshot) {
   GLOAM_TRY_STATUS(solver_->solve(snapshot, poses_));
-  const auto picture = probe_->capture(*shared_->renderer, shared_->mutex, poses_, poses_,
+  const auto picture = probe_->capture(*shared_->renderer, shared_->turns, poses_, poses_,
                                        timing_.last_at_or_before(snapshot.step()));
   const Intrinsics& k = picture->intrinsics;
   automatic_.meter(metered_luminance(picture->radiance.data(), k.width, k.height,
@@ -148,15 +154,15 @@ double ExposureMeter::ev100_at(int64_t step) {
   return (after == values_.begin() ? after : std::prev(after))->second;
 }
 
-Status ExposureMeters::open(Simulator& simulator, SharedRenderers& renderers) {
-  const std::shared_ptr<const CompiledWorld> world = simulator.world();
+Status ExposureMeters::open(const StreamContext& context) {
+  const std::shared_ptr<const CompiledWorld> world = context.simulator.world();
   ByCamera meters;
   for (const CameraOptions& camera : world->scene.cameras) {
     if (!is_metered(camera)) continue;
     std::shared_ptr<ExposureMeter>& meter = meters[camera.name];
     meter = of(camera.name, *world);
     if (meter != nullptr) continue;
-    GLOAM_TRY(meter, ExposureMeter::open(simulator, renderers, camera, seed_, required_));
+    GLOAM_TRY(meter, ExposureMeter::open(context, camera, required_));
   }
   const std::lock_guard lock(mutex_);
   meters_.swap(meters);

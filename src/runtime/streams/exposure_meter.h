@@ -8,6 +8,7 @@
 #include <mutex>
 
 #include "runtime/shared_renderer.h"
+#include "runtime/streams/stream_context.h"
 #include "runtime/streams/stream_thread.h"
 #include "sensors/camera/camera_sensor.h"
 #include "sensors/imager/exposure.h"
@@ -21,10 +22,8 @@ class ExposureMeter {
  public:
   /// Opens the meter of a [[camera]] with an auto_exposure. `required`: the simulation waits for
   /// it, so that the exposure is the same in every run.
-  static Result<std::unique_ptr<ExposureMeter>> open(Simulator& simulator,
-                                                     SharedRenderers& renderers,
-                                                     const CameraOptions& camera, uint64_t seed,
-                                                     bool required);
+  static Result<std::unique_ptr<ExposureMeter>> open(const StreamContext& context,
+                                                     const CameraOptions& camera, bool required);
 
   /// Exposure value of a picture taken at `step`, a step that the simulation has come to, by the
   /// last metering before it, as a camera meters one frame and exposes the next: waits for that.
@@ -36,12 +35,12 @@ class ExposureMeter {
   bool goes_on_in(const CompiledWorld& world) const;
 
  private:
-  ExposureMeter(Simulator& simulator, SharedRenderers& renderers, const CameraOptions& camera,
-                uint64_t seed, const SensorTiming& timing, bool required)
-      : simulator_(simulator),
-        renderers_(renderers),
+  ExposureMeter(const StreamContext& context, const CameraOptions& camera,
+                const SensorTiming& timing, bool required)
+      : simulator_(context.simulator),
+        renderers_(context.renderers),
         camera_(camera.name),
-        seed_(seed),
+        seed_(context.seed),
         timing_(timing),
         required_(required),
         automatic_(*camera.sensing.imager->auto_exposure) {}
@@ -60,6 +59,7 @@ class ExposureMeter {
   std::shared_ptr<SharedRenderer> shared_;  // renderer of the World whose Snapshots come
   AutoExposure automatic_;
   std::unique_ptr<CameraSensor> probe_;
+  std::shared_ptr<SensorAccount> account_;
   std::unique_ptr<PoseSolver> solver_;
   PoseFrame poses_;
   std::mutex mutex_;
@@ -73,16 +73,15 @@ class ExposureMeter {
 /// The meters of a simulation. Any thread.
 class ExposureMeters {
  public:
-  ExposureMeters(uint64_t seed, bool required) : seed_(seed), required_(required) {}
+  explicit ExposureMeters(bool required) : required_(required) {}
   /// Opens those of the World that runs; what goes on in it stays open.
-  Status open(Simulator& simulator, SharedRenderers& renderers);
+  Status open(const StreamContext& context);
   /// Meter of a camera in `world`; null where it has none, or is not open yet.
   std::shared_ptr<ExposureMeter> of(const std::string& camera, const CompiledWorld& world) const;
 
  private:
   using ByCamera = std::map<std::string, std::shared_ptr<ExposureMeter>>;
 
-  const uint64_t seed_;
   const bool required_;
   mutable std::mutex mutex_;
   ByCamera meters_;

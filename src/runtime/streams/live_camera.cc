@@ -23,25 +23,23 @@ std::string pictures_of(const CameraRequest& request, const Intrinsics& k) {
 
 }  // namespace
 
-LiveCamera::LiveCamera(Simulator& simulator, SharedRenderers& renderers,
-                       const CameraRequest& request, uint64_t seed, FrameCallback on_frame,
-                       const ExposureMeters& meters)
-    : simulator_(simulator),
-      renderers_(renderers),
+LiveCamera::LiveCamera(const StreamContext& context, const CameraRequest& request,
+                       FrameCallback on_frame, const ExposureMeters& meters)
+    : simulator_(context.simulator),
+      renderers_(context.renderers),
       request_(request),
-      seed_(seed),
+      seed_(context.seed),
       on_frame_(std::move(on_frame)),
       meters_(meters) {}
 
-Result<std::unique_ptr<LiveCamera>> LiveCamera::open(Simulator& simulator,
-                                                     SharedRenderers& renderers,
-                                                     const CameraRequest& request, uint64_t seed,
+Result<std::unique_ptr<LiveCamera>> LiveCamera::open(const StreamContext& context,
+                                                     const CameraRequest& request,
                                                      FrameCallback on_frame,
                                                      const ExposureMeters& meters) {
+  Simulator& simulator = context.simulator;
   CameraRequest wanted = request;
   if (wanted.rate.num == 0) wanted.rate = own_camera_rate(simulator.world()->scene, wanted.camera);
-  std::unique_ptr<LiveCamera> camera(
-      new LiveCamera(simulator, renderers, wanted, seed, std::move(on_frame), meters));
+  std::unique_ptr<LiveCamera> camera(new LiveCamera(context, wanted, std::move(on_frame), meters));
   GLOAM_TRY_STATUS(camera->follow(simulator.world()));
   // Two in the queue keep the camera busy; more would only make a live picture older.
   const int capacity = request.required ? 2 : 1;
@@ -49,9 +47,13 @@ Result<std::unique_ptr<LiveCamera>> LiveCamera::open(Simulator& simulator,
   GLOAM_TRY(auto queue, simulator.subscribe({.rate = wanted.rate,
                                              .due = timed ? due_steps(camera->timing_) : nullptr,
                                              .required = request.required,
+                                             .sensor = !request.is_view,
                                              .capacity = capacity,
                                              .window = camera->sensor_->window()}));
   camera->queue_ = queue;
+  camera->account_ = context.costs.open(
+      fmt::format("{} '{}'", request.is_view ? "view of" : "camera", wanted.camera),
+      wanted.rate.value());
   LiveCamera* const raw = camera.get();
   camera->thread_.start(std::move(queue),
                         {.what = fmt::format("camera '{}'", wanted.camera),
@@ -59,7 +61,9 @@ Result<std::unique_ptr<LiveCamera>> LiveCamera::open(Simulator& simulator,
                          .take = [raw](const SnapshotWindow& window) { return raw->take(window); },
                          .next = [raw] { return raw->next_window(); },
                          .finish = [raw] { raw->lead_.reset(); },
-                         .on_end = wanted.on_end});
+                         .on_end = wanted.on_end,
+                         .account = camera->account_,
+                         .waited = [raw] { return raw->sensor_->waited(); }});
   return camera;
 }
 
@@ -161,11 +165,11 @@ Status LiveCamera::capture(const SnapshotWindow& window) {
   sensor_->set_same_instant(!request_.required && still && previous_is_still_ && has_previous_ &&
                             previous_.step == now.step && previous_.run == now.run);
   previous_is_still_ = still;
-  auto frame = sensor_->capture(*shared_->renderer, shared_->mutex, keys,
+  auto frame = sensor_->capture(*shared_->renderer, shared_->turns, keys,
                                 continuous ? previous_ : now, index);
-  part_ = 0;
-  if (frame == nullptr || thread_.is_abandoned()) return {};
+  const double time = frame->time;
   on_frame_(std::move(frame));
+  account_->add_message(time);
   std::swap(now, previous_);
   has_previous_ = true;
   return {};

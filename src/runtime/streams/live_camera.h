@@ -10,6 +10,7 @@
 #include "gloam/simulation.h"
 #include "runtime/shared_renderer.h"
 #include "runtime/streams/exposure_meter.h"
+#include "runtime/streams/stream_context.h"
 #include "runtime/streams/stream_thread.h"
 #include "sensors/camera/camera_sensor.h"
 #include "sensors/timing.h"
@@ -20,8 +21,8 @@ namespace gloam {
 
 class LiveCamera final : public CameraStream {
  public:
-  static Result<std::unique_ptr<LiveCamera>> open(Simulator& simulator, SharedRenderers& renderers,
-                                                  const CameraRequest& request, uint64_t seed,
+  static Result<std::unique_ptr<LiveCamera>> open(const StreamContext& context,
+                                                  const CameraRequest& request,
                                                   FrameCallback on_frame,
                                                   const ExposureMeters& meters);
   void set_pose(const Pose& X_WC) override;
@@ -45,8 +46,8 @@ class LiveCamera final : public CameraStream {
   Rational rate() const { return request_.rate; }
 
  private:
-  LiveCamera(Simulator& simulator, SharedRenderers& renderers, const CameraRequest& request,
-             uint64_t seed, FrameCallback on_frame, const ExposureMeters& meters);
+  LiveCamera(const StreamContext& context, const CameraRequest& request, FrameCallback on_frame,
+             const ExposureMeters& meters);
   Status follow(const std::shared_ptr<const CompiledWorld>& world);
   SnapshotWindow next_window();
   Status take(const SnapshotWindow& window);
@@ -65,6 +66,7 @@ class LiveCamera final : public CameraStream {
   std::shared_ptr<ExposureMeter> meter_;  // null: the exposure is the camera's own
   std::unique_ptr<PoseSolver> solver_;
   std::shared_ptr<SnapshotQueue> queue_;
+  std::shared_ptr<SensorAccount> account_;
   std::vector<PoseFrame> keys_;  ///< poses of the window that is exposed
   PoseFrame previous_;           ///< the first of the window before
   bool has_previous_ = false;

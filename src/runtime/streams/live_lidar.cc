@@ -37,31 +37,36 @@ int motion_stretches(Rational rate, Rational timestep, int wanted) {
   return wanted;
 }
 
-LiveLidar::LiveLidar(Simulator& simulator, SharedRenderers& renderers, const LidarRequest& request,
-                     uint64_t seed, ScanCallback on_scan)
-    : simulator_(simulator),
-      renderers_(renderers),
+LiveLidar::LiveLidar(const StreamContext& context, const LidarRequest& request,
+                     ScanCallback on_scan)
+    : simulator_(context.simulator),
+      renderers_(context.renderers),
       request_(request),
-      seed_(seed),
+      seed_(context.seed),
       on_scan_(std::move(on_scan)) {}
 
-Result<std::unique_ptr<LiveLidar>> LiveLidar::open(Simulator& simulator, SharedRenderers& renderers,
-                                                   const LidarRequest& request, uint64_t seed,
+Result<std::unique_ptr<LiveLidar>> LiveLidar::open(const StreamContext& context,
+                                                   const LidarRequest& request,
                                                    ScanCallback on_scan) {
-  std::unique_ptr<LiveLidar> live(
-      new LiveLidar(simulator, renderers, request, seed, std::move(on_scan)));
+  Simulator& simulator = context.simulator;
+  std::unique_ptr<LiveLidar> live(new LiveLidar(context, request, std::move(on_scan)));
   GLOAM_TRY_STATUS(live->follow(simulator.world()));
   // Room for the keys of a scan, which come while the one before is traced.
   const int capacity = live->stretches_ + 1;
-  GLOAM_TRY(auto queue,
-            simulator.subscribe(
-                {.rate = live->key_rate_, .required = request.required, .capacity = capacity}));
+  GLOAM_TRY(auto queue, simulator.subscribe({.rate = live->key_rate_,
+                                             .required = request.required,
+                                             .sensor = true,
+                                             .capacity = capacity}));
+  live->account_ = context.costs.open(fmt::format("lidar '{}'", request.lidar),
+                                      live->sensor_->model().rate.value());
   live->thread_.start(
       std::move(queue),
       {.what = fmt::format("lidar '{}'", request.lidar),
        .memory_hint = "lower its number of beams",
        .take = [raw = live.get()](const SnapshotWindow& now) { return raw->take(now.keys[0]); },
-       .on_end = request.on_end});
+       .on_end = request.on_end,
+       .account = live->account_,
+       .waited = [raw = live.get()] { return raw->sensor_->waited(); }});
   return live;
 }
 
@@ -112,7 +117,9 @@ Status LiveLidar::take(const Snapshot& snapshot) {
     return {};
   }
   if (++gathered_ < keys_.size()) return {};
-  on_scan_(sensor_->scan(*shared_->renderer, shared_->mutex, keys_, key / stretches_ - 1));
+  const double end = keys_.back().time;
+  on_scan_(sensor_->scan(*shared_->renderer, shared_->turns, keys_, key / stretches_ - 1));
+  account_->add_message(end);
   std::swap(keys_.front(), keys_.back());  // the end of one scan begins the next
   gathered_ = 1;
   return {};

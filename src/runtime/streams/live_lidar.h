@@ -7,6 +7,7 @@
 
 #include "gloam/sensor.h"
 #include "runtime/shared_renderer.h"
+#include "runtime/streams/stream_context.h"
 #include "runtime/streams/stream_thread.h"
 #include "sensors/lidar/lidar_sensor.h"
 #include "sim/loop/simulator.h"
@@ -17,9 +18,8 @@ namespace gloam {
 class LiveLidar final : public LidarStream {
  public:
   /// Errors: no such LiDAR, numbers that do not go together, a rate above the step rate.
-  static Result<std::unique_ptr<LiveLidar>> open(Simulator& simulator, SharedRenderers& renderers,
-                                                 const LidarRequest& request, uint64_t seed,
-                                                 ScanCallback on_scan);
+  static Result<std::unique_ptr<LiveLidar>> open(const StreamContext& context,
+                                                 const LidarRequest& request, ScanCallback on_scan);
   /// Snapshots that were lost; a scan that lacks one is not made.
   int64_t dropped() const override { return thread_.dropped(); }
   /// Waits until the queue has ended (the simulation stopped) and every scan was delivered.
@@ -31,8 +31,7 @@ class LiveLidar final : public LidarStream {
   void flush() override { thread_.flush(); }
 
  private:
-  LiveLidar(Simulator& simulator, SharedRenderers& renderers, const LidarRequest& request,
-            uint64_t seed, ScanCallback on_scan);
+  LiveLidar(const StreamContext& context, const LidarRequest& request, ScanCallback on_scan);
   Status follow(const std::shared_ptr<const CompiledWorld>& world);
   Status take(const Snapshot& snapshot);
 
@@ -43,6 +42,7 @@ class LiveLidar final : public LidarStream {
   ScanCallback on_scan_;
   std::shared_ptr<SharedRenderer> shared_;  // renderer of the World whose Snapshots come
   std::unique_ptr<LidarSensor> sensor_;
+  std::shared_ptr<SensorAccount> account_;
   std::unique_ptr<PoseSolver> solver_;
   Rational key_rate_ = {1, 1};   // [Hz]
   StepSchedule schedule_;        // schedule of the keys; the same in every World that it follows

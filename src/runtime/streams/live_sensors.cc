@@ -21,14 +21,38 @@ Result<SensorDescription> find_sensor(const std::vector<SensorDescription>& sens
                suggest_name(name, names)};
 }
 
+// Of a stream, for people.
+std::string name_of(const std::vector<std::string>& sensors) {
+  if (sensors.size() == 1) return fmt::format("sensor '{}'", sensors.front());
+  return fmt::format("{} sensors", sensors.size());
+}
+
+// Steps at which a sensor has a sample and the reader uses it. Where the two hardly ever meet, some
+// of those without a sample are among them: nothing is delivered then.
+std::function<int64_t(int64_t)> both_due(std::function<int64_t(int64_t)> sampled,
+                                         std::function<int64_t(int64_t)> used) {
+  constexpr int kTries = 32;
+  if (!used) return sampled;
+  return [sampled = std::move(sampled), used = std::move(used)](int64_t step) {
+    int64_t next = sampled(step);
+    for (int i = 0; i < kTries; ++i) {
+      const int64_t wanted = used(next);
+      if (wanted == next) break;
+      next = sampled(wanted);
+    }
+    return next;
+  };
+}
+
 }  // namespace
 
-Result<std::unique_ptr<LiveSensors>> LiveSensors::open(Simulator& simulator, uint64_t seed,
+Result<std::unique_ptr<LiveSensors>> LiveSensors::open(const StreamContext& context,
                                                        ProbeSources sources,
                                                        LiveSensorsRequest request,
                                                        SensorCallback on_message) {
+  Simulator& simulator = context.simulator;
   std::unique_ptr<LiveSensors> live(
-      new LiveSensors(seed, std::move(sources), std::move(request), std::move(on_message)));
+      new LiveSensors(context.seed, std::move(sources), std::move(request), std::move(on_message)));
   const LiveSensorsRequest& wanted = live->request_;
   live->world_ = simulator.world();
   GLOAM_TRY(live->group_, live->group_of(wanted.sensors, *live->world_, simulator.timestep()));
@@ -36,15 +60,19 @@ Result<std::unique_ptr<LiveSensors>> LiveSensors::open(Simulator& simulator, uin
   SubscriptionOptions options;
   options.due = live->group_.due(wanted.used);
   options.required = wanted.required;
+  options.sensor = true;
   options.capacity = 64;
   options.batch = wanted.batch;
   GLOAM_TRY(auto queue, simulator.subscribe(options));
+  live->account_ =
+      context.costs.open(name_of(wanted.sensors), rate_of(options.due, simulator.timestep()));
   live->thread_.start(
       std::move(queue),
       {.what = "a stream of sensors",
        .take = [raw = live.get(), timestep = simulator.timestep()](
                    const SnapshotWindow& now) { return raw->sample(now.keys[0], timestep); },
-       .on_end = wanted.on_end});
+       .on_end = wanted.on_end,
+       .account = live->account_});
   return live;
 }
 
@@ -84,7 +112,9 @@ Status LiveSensors::follow(const WorldPtr& world, Rational timestep) {
 
 Status LiveSensors::sample(const Snapshot& snapshot, Rational timestep) {
   if (snapshot.data().world != world_) GLOAM_TRY_STATUS(follow(snapshot.data().world, timestep));
-  return group_.sample(snapshot, on_message_);
+  GLOAM_TRY_STATUS(group_.sample(snapshot, on_message_));
+  account_->add_message(snapshot.time());
+  return {};
 }
 
 }  // namespace gloam

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "gloam/sensor.h"
+#include "runtime/streams/stream_context.h"
 #include "runtime/streams/stream_thread.h"
 #include "sensors/sensor_group.h"
 #include "sim/loop/simulator.h"
@@ -30,7 +31,7 @@ struct LiveSensorsRequest {
 class LiveSensors final : public SensorStream {
  public:
   /// `sources`: of probes, while it is open. Errors: no such sensor, SensorGroup's.
-  static Result<std::unique_ptr<LiveSensors>> open(Simulator& simulator, uint64_t seed,
+  static Result<std::unique_ptr<LiveSensors>> open(const StreamContext& context,
                                                    ProbeSources sources, LiveSensorsRequest request,
                                                    SensorCallback on_message);
   int64_t dropped() const override { return thread_.dropped(); }
@@ -62,6 +63,7 @@ class LiveSensors final : public SensorStream {
   // World whose Snapshots come; holds the group's options
   WorldPtr world_;
   SensorGroup group_;
+  std::shared_ptr<SensorAccount> account_;
   StreamThread thread_;  // last: it uses the others
 };
 

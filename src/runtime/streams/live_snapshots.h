@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "gloam/snapshot_stream.h"
+#include "runtime/streams/stream_context.h"
 #include "runtime/streams/stream_thread.h"
 #include "sim/loop/simulator.h"
 
@@ -13,7 +14,7 @@ class LiveSnapshots final : public SnapshotStream {
  public:
   /// `due` and `batch`: as SubscriptionOptions has them; `due` instead of the request's rate, empty
   /// = that.
-  static Result<std::unique_ptr<LiveSnapshots>> open(Simulator& simulator,
+  static Result<std::unique_ptr<LiveSnapshots>> open(const StreamContext& context,
                                                      const SnapshotRequest& request,
                                                      SnapshotCallback on_snapshot,
                                                      std::function<int64_t(int64_t)> due = {},
@@ -27,6 +28,7 @@ class LiveSnapshots final : public SnapshotStream {
   explicit LiveSnapshots(SnapshotCallback on_snapshot) : on_snapshot_(std::move(on_snapshot)) {}
 
   SnapshotCallback on_snapshot_;
+  std::shared_ptr<SensorAccount> account_;
   StreamThread thread_;  // last: it uses the other
 };
 

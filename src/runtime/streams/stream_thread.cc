@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 #include <new>
 #include <utility>
 
@@ -28,8 +29,7 @@ void StreamThread::run() {
 Status StreamThread::take_all() {
   try {
     while (const SnapshotWindow window = job_.next()) {
-      if (is_abandoned()) break;
-      GLOAM_TRY_STATUS(job_.take(window));
+      GLOAM_TRY_STATUS(take_timed(window));
       const std::lock_guard lock(mutex_);
       ++taken_;
       changed_.notify_all();
@@ -39,6 +39,22 @@ Status StreamThread::take_all() {
         ErrorKind::kPartial, fmt::format("out of memory for {}", job_.what), {}, job_.memory_hint};
   }
   return {};
+}
+
+Status StreamThread::take_timed(const SnapshotWindow& window) {
+  using Clock = std::chrono::steady_clock;
+  if (job_.account == nullptr) return job_.take(window);
+  const auto waited = [this] { return job_.waited ? job_.waited() : 0.0; };
+  const double waited_before = waited();
+  const auto begin = Clock::now();
+  const Status status = job_.take(window);
+  const double seconds = std::chrono::duration<double>(Clock::now() - begin).count();
+  // A sensor that was made anew for another World counts from zero.
+  const double waited_now = waited();
+  job_.account->add_time(seconds,
+                         waited_now >= waited_before ? waited_now - waited_before : waited_now);
+  job_.account->set_dropped(queue_->dropped());
+  return status;
 }
 
 void StreamThread::end(Error why) {

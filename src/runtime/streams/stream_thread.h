@@ -12,6 +12,7 @@
 #include <thread>
 
 #include "gloam/stream.h"
+#include "runtime/streams/sensor_costs.h"
 #include "sim/snapshots/snapshot_queue.h"
 
 namespace gloam {
@@ -27,6 +28,10 @@ struct StreamJob {
   /// Comes on the thread as the last thing, however the stream ended.
   std::function<void()> finish = {};
   EndCallback on_end = {};
+  /// Gets the time of each call of `take`, of which `waited` tells how much passed in waiting for
+  /// other sensors, over all calls [s]. `take` counts its messages itself.
+  std::shared_ptr<SensorAccount> account = {};
+  std::function<double()> waited = {};
 };
 
 class StreamThread {
@@ -58,6 +63,7 @@ class StreamThread {
  private:
   void run();
   Status take_all();
+  Status take_timed(const SnapshotWindow& window);
   void end(Error why);
 
   std::shared_ptr<SnapshotQueue> queue_;

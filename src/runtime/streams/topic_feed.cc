@@ -192,7 +192,7 @@ Status TopicFeed::open_snapshots(LiveSimulation& simulation, Outlets outlets) {
     if (const Status taken = take_instant(reader.get(), now); !taken.ok())
       note("topics of instants", taken);
   };
-  GLOAM_TRY(auto stream, LiveSnapshots::open(simulation.simulator(), request, on_snapshot,
+  GLOAM_TRY(auto stream, LiveSnapshots::open(simulation.stream_context(), request, on_snapshot,
                                              first_of(schedules), batch_));
   streams_.push_back(std::move(stream));
   return {};

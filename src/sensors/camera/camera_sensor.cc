@@ -222,8 +222,7 @@ Pose CameraSensor::free_pose() const {
   return in_world(free_pose_, description_.origin);
 }
 
-std::shared_ptr<const CameraFrame> CameraSensor::capture(Renderer& renderer,
-                                                         std::mutex& renderer_mutex,
+std::shared_ptr<const CameraFrame> CameraSensor::capture(Renderer& renderer, RenderTurns& turns,
                                                          std::span<const PoseFrame* const> keys,
                                                          const PoseFrame& previous,
                                                          int64_t frame_index) {
@@ -241,9 +240,20 @@ std::shared_ptr<const CameraFrame> CameraSensor::capture(Renderer& renderer,
   }
   settings_.frame = draws(view, frame_index);
   begin_samples(view);
-  std::vector<Vec3f>* light = nullptr;
+  std::vector<Vec3f>* const light = render(renderer, turns, view, keys, previous);
+  if (!stats_.finished) return nullptr;
+  auto frame = std::make_shared<CameraFrame>();
+  convert(now, frame_index, view, light, frame.get());
+  return frame;
+}
+
+std::vector<Vec3f>* CameraSensor::render(Renderer& renderer, RenderTurns& turns,
+                                         const CameraView& view,
+                                         std::span<const PoseFrame* const> keys,
+                                         const PoseFrame& previous) {
   {
-    const std::lock_guard lock(renderer_mutex);
+    const RenderTurn turn(turns, use_);
+    settings_.turns = &turns;
     renderer.update(keys, previous);
     if (settings_.tier == RenderTier::kFast && history_ == nullptr) {
       history_ = renderer.make_history();
@@ -252,15 +262,14 @@ std::shared_ptr<const CameraFrame> CameraSensor::capture(Renderer& renderer,
     stats_ = renderer.render(view, settings_, &film_);
     if (!stats_.finished) return nullptr;
     warn_of_noise(renderer);
-    accumulate();
-    if (channels_.light() && !description_.weather.particles.empty()) {
-      light = denoise();
-      renderer.draw_particles(view, film_, light);
-    }
   }
-  auto frame = std::make_shared<CameraFrame>();
-  convert(now, frame_index, view, light, frame.get());
-  return frame;
+  accumulate();
+  if (!channels_.light() || description_.weather.particles.empty()) return nullptr;
+  std::vector<Vec3f>* const light = denoise();
+  const RenderTurn turn(turns, use_);
+  renderer.update(keys, previous);
+  renderer.draw_particles(view, film_, light);
+  return light;
 }
 
 uint32_t CameraSensor::draws(const CameraView& view, int64_t frame_index) const {

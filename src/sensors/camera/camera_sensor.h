@@ -17,6 +17,7 @@
 #include "instant/pose_frame.h"
 #include "render/film/denoise.h"
 #include "render/renderer.h"
+#include "render/turns.h"
 #include "sensors/camera/camera_channels.h"
 #include "sensors/camera/camera_models.h"
 #include "sensors/camera/lens_drops.h"
@@ -42,17 +43,17 @@ class CameraSensor {
                                                       const CameraRequest& request, uint64_t seed);
 
   /// Renders the exposure that starts with the first of `keys`, which follow each other evenly and
-  /// reach over window(); with a single key the instant of that one. `renderer_mutex` is held while
+  /// reach over window(); with a single key the instant of that one. Has a turn of `turns` while
   /// the shared renderer works, not while this sensor denoises and converts. `previous` is the
   /// first key of the frame before, for motion. Null if the progress callback ended it.
-  std::shared_ptr<const CameraFrame> capture(Renderer& renderer, std::mutex& renderer_mutex,
+  std::shared_ptr<const CameraFrame> capture(Renderer& renderer, RenderTurns& turns,
                                              std::span<const PoseFrame* const> keys,
                                              const PoseFrame& previous, int64_t frame_index);
-  std::shared_ptr<const CameraFrame> capture(Renderer& renderer, std::mutex& renderer_mutex,
+  std::shared_ptr<const CameraFrame> capture(Renderer& renderer, RenderTurns& turns,
                                              const PoseFrame& now, const PoseFrame& previous,
                                              int64_t frame_index) {
     const PoseFrame* const key = &now;
-    return capture(renderer, renderer_mutex, {&key, 1}, previous, frame_index);
+    return capture(renderer, turns, {&key, 1}, previous, frame_index);
   }
   /// Announces that the next capture is of the same instant as the last one, or not. If its pose is
   /// the same too, it adds samples to the picture: the light is the mean over the captures since
@@ -81,6 +82,8 @@ class CameraSensor {
   void set_progress(std::function<bool(double done)> progress) {
     settings_.progress = std::move(progress);
   }
+  /// Wall time spent waiting for turns at the renderer, over all pictures [s].
+  double waited() const { return use_.waited; }
   /// Statistics of the last picture.
   const RenderStats& stats() const { return stats_; }
   const Intrinsics& intrinsics() const { return intrinsics_; }
@@ -96,6 +99,9 @@ class CameraSensor {
 
  private:
   CameraSensor(const RenderDescription& description, int camera, const CameraChannels& channels);
+  /// The light of the next picture, in a turn at the renderer; null = as denoise() gives it.
+  std::vector<Vec3f>* render(Renderer& renderer, RenderTurns& turns, const CameraView& view,
+                             std::span<const PoseFrame* const> keys, const PoseFrame& previous);
   /// The film's light, denoised where it is to be.
   std::vector<Vec3f>* denoise();
   Shutter shutter(std::span<const PoseFrame* const> keys) const;
@@ -120,6 +126,7 @@ class CameraSensor {
   const CameraChannels channels_;
   RenderSettings settings_;
   RenderStats stats_;
+  RenderUse use_;
   Intrinsics intrinsics_;
   Rational rate_;
   std::unique_ptr<CameraModels> models_;  // models after the light

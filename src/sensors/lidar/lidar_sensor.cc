@@ -129,7 +129,7 @@ void LidarSensor::plan(std::span<const PoseFrame> keys, int64_t index) {
   }
 }
 
-std::shared_ptr<const LidarScan> LidarSensor::scan(Renderer& renderer, std::mutex& renderer_mutex,
+std::shared_ptr<const LidarScan> LidarSensor::scan(Renderer& renderer, RenderTurns& turns,
                                                    std::span<const PoseFrame> keys, int64_t index) {
   GLOAM_CHECK(keys.size() >= 2, "a scan has a beginning and an end");
   plan(keys, index);
@@ -154,9 +154,10 @@ std::shared_ptr<const LidarScan> LidarSensor::scan(Renderer& renderer, std::mute
   view.seed = seed_;
   view.scan = static_cast<uint64_t>(index);
   view.beams = beams_;
+  view.turns = &turns;
   returns_.resize(beams_.size() * static_cast<size_t>(model_.optics.most_returns));
   {
-    const std::lock_guard lock(renderer_mutex);
+    const RenderTurn turn(turns, use_);
     renderer.update(frames, keys.front());
     renderer.scan(view, returns_);
   }

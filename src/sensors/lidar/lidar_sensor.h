@@ -4,12 +4,12 @@
 // evenly, sensor and bodies alike, and each beam has its own time.
 
 #include <memory>
-#include <mutex>
 #include <span>
 
 #include "gloam/sensor.h"
 #include "render/lidar_view.h"
 #include "render/renderer.h"
+#include "render/turns.h"
 #include "sensors/lidar/lidar_particle_table.h"
 #include "sensors/lidar/lidar_pattern.h"
 #include "world/sensors/authored_lidar.h"
@@ -24,10 +24,12 @@ class LidarSensor {
                                                      const LidarDescription& lidar, uint64_t seed);
 
   /// The scan between the first and the last of `keys`, two or more instants in order.
-  /// `renderer_mutex` is held while the shared renderer works.
-  std::shared_ptr<const LidarScan> scan(Renderer& renderer, std::mutex& renderer_mutex,
+  /// Has a turn of `turns` while the shared renderer works.
+  std::shared_ptr<const LidarScan> scan(Renderer& renderer, RenderTurns& turns,
                                         std::span<const PoseFrame> keys, int64_t index);
 
+  /// Wall time spent waiting for turns at the renderer, over all scans [s].
+  double waited() const { return use_.waited; }
   const LidarModel& model() const { return model_; }
   const LidarOptions& options() const { return lidar_.options; }
 
@@ -56,6 +58,7 @@ class LidarSensor {
   std::vector<uint32_t> place_;       ///< in beams_, by firing
   std::vector<LidarMotion> motions_;  ///< motions of the stretches between keys
   std::vector<LidarReturn> returns_;  ///< by beams_
+  RenderUse use_;
 };
 
 }  // namespace gloam

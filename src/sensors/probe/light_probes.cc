@@ -96,7 +96,7 @@ void read_sun_disc(const ProbeRenderer& shared, int camera, const PoseFrame& pos
   std::erase_if(seen, [](Vec3f d) { return d.z < 0; });  // below the sky's horizon
   if (seen.empty()) return;
   std::vector<float> passed(seen.size());
-  const std::lock_guard lock(*shared.mutex);
+  const std::lock_guard lock(*shared.turns);
   shared.renderer->update(poses, poses, poses);
   shared.renderer->distant_light(view, seen, passed);
   for (const float one : passed) numbers[3] += double{one} / count;
@@ -110,7 +110,7 @@ Result<ProbeReader> illuminance_probe(const ProbeDescription& probe, const Probe
     GLOAM_TRY(const Vec3 p, at.place(probe));
     GLOAM_TRY(const Vec3 n, at.normal(probe));
     GLOAM_TRY(const PoseFrame* const poses, at.poses());
-    const std::lock_guard lock(*shared.mutex);
+    const std::lock_guard lock(*shared.turns);
     shared.renderer->update(*poses, *poses, *poses);
     numbers[0] = double{shared.renderer->illuminance(
         to_vec3f(from_origin(p, shared.description->origin)), to_vec3f(n))};

@@ -4,13 +4,13 @@
 
 #include <functional>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "render/renderer.h"
+#include "render/turns.h"
 #include "sim/snapshots/pose_solver.h"
 #include "world/sensors/probe_description.h"
 
@@ -21,7 +21,7 @@ struct ProbeRenderer {
   std::shared_ptr<const void> owner;  ///< keeps the others
   const RenderDescription* description = nullptr;
   Renderer* renderer = nullptr;
-  std::mutex* mutex = nullptr;  ///< held while `renderer` works
+  RenderTurns* turns = nullptr;  ///< taken while `renderer` works
 };
 
 /// Answers of the simulation to its probes. Called on a stream's thread, when a probe that needs

@@ -113,8 +113,8 @@ height = 240
     simulator->start();
     PoseFrame poses;
     EXPECT_TRUE(solver->solve(simulator->latest(), poses).ok());
-    std::mutex mutex;
-    return (*sensor)->capture(*renderer, mutex, poses, poses, 0);
+    RenderTurns turns;
+    return (*sensor)->capture(*renderer, turns, poses, poses, 0);
   }
 
   TempFolder folder_;

@@ -67,7 +67,7 @@ class CameraModelsTest : public ::testing::Test {
       ADD_FAILURE() << sensor.error().to_string();
       abort();
     }
-    return (*sensor)->capture(*renderer_, mutex_, poses_, poses_, index);
+    return (*sensor)->capture(*renderer_, turns_, poses_, poses_, index);
   }
 
   TempFolder folder_;
@@ -75,7 +75,7 @@ class CameraModelsTest : public ::testing::Test {
   RenderDescription description_;
   std::unique_ptr<Renderer> renderer_;
   PoseFrame poses_;
-  std::mutex mutex_;
+  RenderTurns turns_;
 };
 
 std::string camera(const std::string& name, const std::string& more = "") {
@@ -106,8 +106,8 @@ TEST(DefaultCamera, ShowsAChartOfGreysAsSrgbDoes) {
     auto sensor = CameraSensor::create(b.description, request, 1);
     ASSERT_TRUE(sensor.ok()) << sensor.error().to_string();
     const auto renderer = b.make();
-    std::mutex mutex;
-    const auto frame = (*sensor)->capture(*renderer, mutex, b.frame, b.frame, 0);
+    RenderTurns turns;
+    const auto frame = (*sensor)->capture(*renderer, turns, b.frame, b.frame, 0);
     for (size_t c = 0; c < 3; ++c) {
       double mean = 0;
       for (size_t i = c; i < frame->rgb.size(); i += 3) mean += frame->rgb[i];
@@ -184,7 +184,7 @@ TEST_F(CameraModelsTest, AStillSceneMakesNoEventsButTheirNoise) {
     PoseFrame now = poses_;
     for (int k = 0; k < 5; ++k) {
       now.time = 0.02 * k;
-      out.push_back(sensor->capture(*renderer_, mutex_, now, poses_, k));
+      out.push_back(sensor->capture(*renderer_, turns_, now, poses_, k));
     }
     return out;
   };

@@ -5,8 +5,10 @@
 #include <mujoco/mujoco.h>
 
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <limits>
+#include <thread>
 
 #include "base/rng.h"
 #include "gloam/program.h"
@@ -81,7 +83,7 @@ class CameraSensorTest : public ::testing::Test {
   }
   std::shared_ptr<const CameraFrame> capture(CameraSensor& sensor, const PoseFrame& now,
                                              const PoseFrame& previous, int64_t index = 0) {
-    return sensor.capture(*renderer_, mutex_, now, previous, index);
+    return sensor.capture(*renderer_, turns_, now, previous, index);
   }
   static size_t pixel(const CameraFrame& frame, int x, int y) {
     return static_cast<size_t>(y) * static_cast<size_t>(frame.intrinsics.width) +
@@ -94,8 +96,37 @@ class CameraSensorTest : public ::testing::Test {
   std::unique_ptr<Renderer> renderer_;
   std::unique_ptr<PoseSolver> solver_;
   std::unique_ptr<Simulator> simulator_;
-  std::mutex mutex_;
+  RenderTurns turns_;
 };
+
+// A picture that other sensors interrupt, at other instants, is the same to the last bit.
+TEST_F(CameraSensorTest, PicturesDoNotDependOnWhoRendersInBetween) {
+  const PoseFrame now = poses_at(0), later = poses_at(50), last = poses_at(100);
+  for (const char* tier : {"path", "direct", "fast"}) {
+    CameraRequest request = ask("plain", {"radiance", "depth", "segmentation", "boxes"});
+    request.width = 320;
+    request.height = 240;
+    request.render = {.tier = tier, .spp = 8, .denoise = std::string(tier) == "direct"};
+    const auto alone = capture(*make(request), now, now);
+    std::atomic<bool> ends{false};
+    std::atomic<int> turns{0};
+    std::thread other([&] {
+      const auto small = make(ask("sensor", {"depth"}));
+      for (int i = 0; !ends; ++i) {
+        const PoseFrame& then = i % 2 == 0 ? later : last;
+        capture(*small, then, now, i);
+        ++turns;
+      }
+    });
+    while (turns == 0) std::this_thread::yield();
+    const auto beside = capture(*make(request), now, now);
+    ends = true;
+    other.join();
+    EXPECT_EQ(alone->radiance, beside->radiance) << tier;
+    EXPECT_EQ(alone->depth, beside->depth) << tier;
+    EXPECT_EQ(alone->instance, beside->instance) << tier;
+  }
+}
 
 // Things at rest must not swim, and no pattern may move along with a camera.
 TEST_F(CameraSensorTest, DenoisedPicturesHaveTheSameDrawsWhileTheCameraStands) {

@@ -54,7 +54,8 @@ TEST(LidarKernel, OneFloatAndLanesSeeTheSame) {
   }
   view.beams = beams;
   std::vector<LidarReturn> in_lanes(beams.size() * 5), one_by_one = in_lanes;
-  scan_beams(probe.view, probe.tracer, view, in_lanes);
+  RenderSlices whole(nullptr, {});
+  scan_beams(probe.view, probe.tracer, view, &whole, in_lanes);
   for (const LidarBeam& beam : beams) {
     const LidarKey key{view.seed, view.scan, beam.id};
     LidarEchoes echoes;

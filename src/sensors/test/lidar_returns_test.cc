@@ -235,9 +235,9 @@ TEST(LidarHides, BeamsPassTheHousingTheyComeFromAndWhatHangsOnIt) {
   hidden.back() = 1;
   auto sensor = LidarSensor::create(b.description, {pencil(), 0, {}, hidden}, 1);
   ASSERT_TRUE(sensor.ok());
-  std::mutex mutex;
+  RenderTurns turns;
   const PoseFrame keys[] = {b.frame, b.frame};
-  const auto scan = (*sensor)->scan(**renderer, mutex, keys, 0);
+  const auto scan = (*sensor)->scan(**renderer, turns, keys, 0);
   ASSERT_EQ(scan->size(), 1u);
   EXPECT_NEAR(scan->range[0], 10, 1e-4f);
   EXPECT_NEAR(scan->intensity[0], 50, 0.1);

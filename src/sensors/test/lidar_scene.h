@@ -54,8 +54,8 @@ inline std::shared_ptr<const LidarScan> scan_scene(const SceneBuilder& scene,
     ADD_FAILURE() << sensor.error().to_string();
     abort();
   }
-  std::mutex mutex;
-  return (*sensor)->scan(**renderer, mutex, keys, index);
+  RenderTurns turns;
+  return (*sensor)->scan(**renderer, turns, keys, index);
 }
 
 inline Vec3f point(const LidarScan& scan, size_t i) { return {scan.x[i], scan.y[i], scan.z[i]}; }

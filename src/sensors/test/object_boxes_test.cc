@@ -3,7 +3,6 @@
 
 #include <cmath>
 #include <fstream>
-#include <mutex>
 
 #include "scene/test/temp_folder.h"
 #include "sensors/camera/camera_sensor.h"
@@ -47,8 +46,8 @@ std::vector<ObjectView> see(const char* model, uint32_t first_id = 0) {
   CameraRequest request{.camera = "eye"};
   request.outputs = {"boxes"};
   auto sensor = std::move(CameraSensor::create(description, request, 1)).value();
-  std::mutex mutex;
-  return sensor->capture(*renderer, mutex, poses, poses, 0)->objects;
+  RenderTurns turns;
+  return sensor->capture(*renderer, turns, poses, poses, 0)->objects;
 }
 
 const ObjectView& find(const std::vector<ObjectView>& objects, const std::string& name) {

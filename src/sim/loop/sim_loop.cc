@@ -123,7 +123,7 @@ bool SimLoop::publish_due() {
   bool all = true;
   for (Subscription& s : subscriptions_) {
     if (s.due() > step || s.queue()->closed()) continue;
-    all = s.publish(step, *stepper_) && all;
+    all = s.publish(step, *stepper_, waits_for_sensors_) && all;
   }
   std::erase_if(subscriptions_, [this](const Subscription& s) {
     if (s.queue()->closed()) dropped_by_closed_ += s.queue()->dropped();

@@ -38,6 +38,8 @@ class SimLoop {
   /// Hands out the Snapshots that are due at the present step. False when a required queue is full:
   /// call again when it may have room.
   bool publish_due();
+  /// From now on queues of sensors are waited for as required ones are, or not.
+  void set_waits_for_sensors(bool waits) { waits_for_sensors_ = waits; }
   /// Wakes the readers of what was handed out and waits to be a batch.
   void flush_queues();
   /// Applies Commands and takes one step; when a Command was a reset, stands at step 0 instead.
@@ -106,6 +108,7 @@ class SimLoop {
   RunEnds run_ends_;
   int64_t next_publication_ = 0;  // earliest `due` of the subscriptions
   int64_t dropped_by_closed_ = 0;
+  bool waits_for_sensors_ = false;
 };
 
 }  // namespace gloam

@@ -14,6 +14,9 @@
 namespace gloam {
 namespace {
 
+// By the wall clock.
+bool is_paced(Pace pace) { return pace == Pace::kRealTime || pace == Pace::kSensors; }
+
 Error no_call_from_a_step() {
   return {ErrorKind::kUsage,
           "a controller or step hook cannot make its own simulation step, wait or change",
@@ -54,7 +57,9 @@ Simulator::Simulator(std::unique_ptr<Stepper> stepper, Rational timestep, Simula
       loop_(std::move(stepper), timestep, commands_, std::move(scene_commands),
             std::move(options.replay)),
       pacer_(timestep.value(), options.speed),
-      world_(loop_.stepper().shared_world()) {}
+      world_(loop_.stepper().shared_world()) {
+  loop_.set_waits_for_sensors(pace_ == Pace::kSensors);
+}
 
 Simulator::~Simulator() { stop(); }
 
@@ -73,7 +78,7 @@ void Simulator::run_thread() {
     } else if (loop_.stepper().failed() || !wants_step()) {
       report_idle();
       signal_->wait(ticket);
-    } else if (pace_ != Pace::kRealTime || pacer_.ready(loop_.stepper().step_count())) {
+    } else if (!is_paced(pace_) || pacer_.ready(loop_.stepper().step_count())) {
       take_step();
     }
   }
@@ -218,6 +223,7 @@ void Simulator::set_pace(Pace pace, double speed) {
   GLOAM_CHECK(speed > 0 && std::isfinite(speed), "the speed is a positive number");
   call([this, pace, speed] {
     pace_ = pace;
+    loop_.set_waits_for_sensors(pace == Pace::kSensors);
     pacer_.set_speed(speed);
   });
 }

@@ -25,7 +25,7 @@ struct SimulatorOptions {
   uint64_t seed = 1;                    ///< the chain of state hashes starts from it
   std::optional<double> timestep = {};  ///< instead of the model's, > 0 [s]
   Pace pace = Pace::kFast;
-  double speed = 1;                         ///< for kRealTime, > 0
+  double speed = 1;                         ///< for kRealTime and kSensors, > 0
   DataMaker make_data = {};                 ///< empty = the simulation makes its own mjData
   int command_capacity = 4096;              ///< Commands in flight between two steps, 2 … 2^20
   int64_t log_capacity = int64_t{1} << 20;  ///< Commands the log keeps until they are taken

@@ -9,7 +9,7 @@ SnapshotQueue::SnapshotQueue(const SubscriptionOptions& options, std::shared_ptr
 
 SnapshotWindow SnapshotQueue::try_next_window() {
   SnapshotWindow window;
-  if (queue_.try_pop(window) && options_.required &&
+  if (queue_.try_pop(window) && (options_.required || options_.sensor) &&
       is_awaited_.exchange(false, std::memory_order_acq_rel))
     sim_signal_->raise();
   return window;

@@ -36,6 +36,8 @@ struct SubscriptionOptions {
   bool required = false;  ///< the simulation waits while the queue is full and nothing is lost
                           ///< (but what it waits with when a reset comes); else the oldest are
                           ///< dropped and counted
+  bool sensor = false;    ///< the simulation waits as for a required one while its pace is
+                          ///< Pace::kSensors
   int capacity = 8;       ///< Snapshots (or windows) that wait to be consumed, 1 … 65536
   /// Snapshots (or windows) that wait before a sleeping reader is woken, 1 … capacity; it gets
   /// fewer when the simulation stands still, and when the last of them comes kLongestBatch of wall
@@ -91,12 +93,12 @@ class SnapshotQueue final : public SnapshotSource {
   }
   /// Counts Snapshots that could not be completed.
   void count_lost(int64_t count) { dropped_.fetch_add(count, std::memory_order_relaxed); }
-  /// Whether another window fits. Of a required queue: if not, the sim's Signal is raised once one
-  /// does.
+  /// Whether another window fits. Of a queue that the simulation waits for: if not, the sim's
+  /// Signal is raised once one does.
   bool has_room();
   /// Wakes readers for what waits, be it less than a batch.
   void flush();
-  /// Required queues must not be full.
+  /// Queues that the simulation waits for must not be full.
   void publish(SnapshotWindow window);
 
  private:

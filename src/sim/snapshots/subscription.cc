@@ -71,7 +71,9 @@ int Subscription::slots() const {
   return (options.capacity + 1 + made) * keys_.count;
 }
 
-bool Subscription::publish(int64_t step, Stepper& stepper) {
+bool Subscription::publish(int64_t step, Stepper& stepper, bool waits_for_sensors) {
+  const SubscriptionOptions& options = queue_->options();
+  const bool waits = options.required || (options.sensor && waits_for_sensors);
   if (event_ <= step) {
     GLOAM_CHECK(pending_count_ < kMostPending, "windows overlap more than was agreed");
     pending_[static_cast<size_t>(pending_count_++)].first = step;
@@ -83,7 +85,7 @@ bool Subscription::publish(int64_t step, Stepper& stepper) {
     if (p.window.count < keys_.count && next_key(p) <= step) p.window.add(stepper.snapshot());
   }
   while (pending_count_ > 0 && pending_[0].window.count == keys_.count) {
-    if (queue_->options().required && !queue_->has_room()) return false;
+    if (waits && !queue_->has_room()) return false;
     queue_->publish(std::exchange(pending_[0].window, {}));
     std::rotate(pending_.begin(), pending_.begin() + 1, pending_.begin() + pending_count_);
     --pending_count_;

@@ -28,8 +28,9 @@ class Subscription {
   /// After a recompile.
   void forget_windows();
   /// Takes the Snapshot of this step where it belongs, and hands out what is complete. False when
-  /// there is no room for it.
-  bool publish(int64_t step, Stepper& stepper);
+  /// there is no room for it and the simulation waits: for required queues, and for those of
+  /// sensors where `waits_for_sensors`.
+  bool publish(int64_t step, Stepper& stepper, bool waits_for_sensors);
 
  private:
   /// A window that is not yet handed out.

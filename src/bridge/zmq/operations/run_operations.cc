@@ -37,18 +37,35 @@ Status ping(const Call&, Packer& out) {
   return {};
 }
 
+void pack_sensors(const std::vector<SensorCost>& sensors, Packer& out) {
+  out.pack(std::string_view("sensors"));
+  out.pack_array(static_cast<uint32_t>(sensors.size()));
+  for (const SensorCost& sensor : sensors) {
+    out.pack_map(7);
+    pack_pair(out, "name", valid_text(sensor.name));
+    pack_pair(out, "rate", sensor.rate);
+    pack_pair(out, "achieved", sensor.achieved);
+    pack_pair(out, "messages", sensor.messages);
+    pack_pair(out, "dropped", sensor.dropped);
+    pack_pair(out, "wall_ms", sensor.wall_ms);
+    pack_pair(out, "waited_ms", sensor.waited_ms);
+  }
+}
+
 Status state(const Call& call, Packer& out) {
   const Services& services = call.services;
   const SimulationStats stats = services.simulation().stats();
   const Status physics = services.simulation().status();
   const Snapshot now = services.simulation().latest();
   GLOAM_TRY(const StateLayout layout, services.layouts.of(now));
-  out.pack_map(kStatePairs + 8);
+  out.pack_map(kStatePairs + 10);
   pack_state(out, now, layout);
   pack_pair(out, "run_state", std::string_view(to_string(services.operations().state())));
   pack_pair(out, "paused", services.simulation().paused());
   pack_pair(out, "speed", services.operations().speed().value_or(0));
+  pack_pair(out, "pace", std::string_view(to_string(stats.pace)));
   pack_pair(out, "realtime_factor", stats.realtime_factor);
+  pack_sensors(stats.sensors, out);
   pack_pair(out, "commands_applied", stats.commands_applied);
   pack_pair(out, "warnings", stats.warnings);
   pack_pair(out, "claims", services.sessions.claims(call.from.client));
@@ -72,9 +89,11 @@ Status resume(const Call& call, Packer& out) {
 }
 
 Status pace(const Call& call, Packer& out) {
-  std::optional<double> speed;
-  if (call.arguments.has("speed")) speed = call.arguments.number("speed");
-  GLOAM_TRY_STATUS(call.services.operations().set_speed(speed));
+  Operator& operations = call.services.operations();
+  const bool has_pace = call.arguments.has("pace"), has_speed = call.arguments.has("speed");
+  if (has_speed) GLOAM_TRY_STATUS(operations.set_speed(call.arguments.number("speed")));
+  if (has_pace) GLOAM_TRY_STATUS(operations.set_pace(call.arguments.text("pace")));
+  if (!has_pace && !has_speed) GLOAM_TRY_STATUS(operations.set_speed({}));
   pack_nothing(out);
   return {};
 }
@@ -155,7 +174,8 @@ std::vector<Operation> run_operations() {
        "speed of a run",
        kAtOnce,
        {{"speed", kNumber, false, "simulated seconds per second",
-         "0.001 to 1000; without it as fast as possible"}},
+         "0.001 to 1000; without speed and pace as fast as possible"},
+        {"pace", kText, false, "", "fast, realtime or sensors (docs/sensors.md)"}},
        pace},
       {"step",
        "takes steps and answers with the state after the last; the run must be paused",

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <vector>
 
-#include "base/parallel.h"
 #include "render/kernel/camera/channels.h"
 #include "render/kernel/math/sampler.h"
 #include "render/kernel/media/medium_march.h"
@@ -114,9 +113,9 @@ class Row {
 
 }  // namespace
 
-uint64_t refine_guides(const EdgeSamples& job, int count, Film* film) {
+uint64_t refine_guides(const EdgeSamples& job, int count, RenderSlices* slices, Film* film) {
   std::vector<uint64_t> rays(static_cast<size_t>(film->height));
-  parallel_for("edge samples", film->height, [&](int64_t y) {
+  slices->run("edge samples", film->height, [&](int64_t y) {
     rays[static_cast<size_t>(y)] = Row(job, count, static_cast<int>(y), film).run();
   });
   uint64_t total = 0;

@@ -9,6 +9,7 @@
 #include "render/kernel/camera/pixel_mean.h"
 #include "render/kernel/path/path.h"
 #include "render/renderer.h"
+#include "render/slices.h"
 
 namespace gloam {
 
@@ -39,8 +40,7 @@ struct Job {
   /// exact channels too.
   bool centered = false;
   Film* film = nullptr;
-  RenderWatch* watch = nullptr;  ///< asked between samples whether to go on; null = to the end
-  bool may_continue() const { return watch == nullptr || watch->may_continue(); }
+  RenderSlices* slices = nullptr;
 };
 
 /// Pixel `index` of a full tile: 4 x 4 blocks, so that packets of primary rays are compact.

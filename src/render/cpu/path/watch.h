@@ -1,19 +1,23 @@
 #pragma once
-// Lets a caller watch a render and end it: counts finished tiles from many threads.
+// Lets a caller watch a render and end it: counts finished tiles from many threads. Holds the
+// slices that the render is cut into.
 
 #include <atomic>
 #include <chrono>
 #include <functional>
 #include <mutex>
 
+#include "render/slices.h"
+
 namespace gloam {
 
 class RenderWatch {
  public:
-  RenderWatch(std::function<bool(double)> progress, int64_t tiles)
-      : progress_(std::move(progress)), tiles_(tiles) {}
+  RenderWatch(std::function<bool(double)> progress, int64_t tiles, RenderSlices& slices)
+      : progress_(std::move(progress)), tiles_(tiles), slices_(slices) {}
 
   bool stopped() const { return stopped_.load(std::memory_order_relaxed); }
+  RenderSlices& slices() { return slices_; }
   /// One more tile is finished.
   void tile_done() { ask(1); }
   /// Whether the work in progress may continue.
@@ -36,6 +40,7 @@ class RenderWatch {
 
   const std::function<bool(double)> progress_;
   const int64_t tiles_;
+  RenderSlices& slices_;
   std::atomic<int64_t> done_{0};
   std::atomic<bool> stopped_{false};
   std::mutex mutex_;

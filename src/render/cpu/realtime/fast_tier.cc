@@ -94,18 +94,15 @@ void FastHistory::compose() {
   });
 }
 
-void FastHistory::add_picture(const SceneView& scene, const CpuTracer& tracer,
-                              const CameraView32& camera, const RenderSettings& settings,
-                              uint32_t pass, RenderWatch* watch) {
-  SceneView plain = scene;  // rays of pixels go where they must
-  plain.guide.probability = 0;
-  const Vec3f eye = camera.pose.X_WC_open.p;
+void FastHistory::add_picture(const Job& job, uint32_t pass, RenderWatch* watch) {
+  const Vec3f eye = job.camera.pose.X_WC_open.p;
+  const uint64_t seed = job.settings.seed;
   for (bool again = true; again && !watch->stopped();) {
     const bool first = cache_.size() == 0;
-    const float edge = cell_edge(camera) * coarse_;
+    const float edge = cell_edge(job.camera) * coarse_;
     IrradianceCacheView cache = cache_.view(eye, edge);
     cache.lamps_move = lamps_move_;
-    trace({plain, tracer, camera, cache, settings.seed}, pass);
+    trace({job.scene, job.tracer, job.camera, cache, seed}, pass, job.slices);
     cache_.ask(requests_);
     if (first && cache_.size() > realtime::kManyCells && coarse_ < realtime::kCoarsest) {
       coarse_ *= 2;
@@ -114,23 +111,24 @@ void FastHistory::add_picture(const SceneView& scene, const CpuTracer& tracer,
     }
     again = first;  // a first picture is traced twice: its rays saw no cache
     rays_ += cache_.update(
-        scene, tracer, eye, edge, settings.seed, first,
+        job.scene, job.tracer, eye, edge, seed, first,
         pictures_ < realtime::kFirstPictures ? realtime::kFirstCells : realtime::kMostCells, watch);
     if (requests_.empty()) break;
   }
-  look_up(cache_.view(eye, cell_edge(camera) * coarse_));
-  now_.signals = scene.media.volumes.empty() ? kAirSignal : kFastSignals;
+  look_up(cache_.view(eye, cell_edge(job.camera) * coarse_));
+  now_.signals = job.scene.media.volumes.empty() ? kAirSignal : kFastSignals;
   filter_.accumulate(before_, &now_);
+  job.slices->pause();
   filter_.smooth(now_);
   compose();
+  job.slices->pause();
   resolve(before_, &filter_.color_gain, &now_);
   std::swap(now_, before_);
   ++pictures_;
 }
 
-RenderStats FastHistory::render(const SceneView& scene, const CpuTracer& tracer,
-                                const CameraView32& camera, const RenderSettings& settings,
-                                Film* film) {
+RenderStats FastHistory::render(const Job& job) {
+  Film* const film = job.film;
   rays_ = 0;
   if (film->width != now_.width || film->height != now_.height) {
     now_.resize(film->width, film->height);
@@ -140,13 +138,12 @@ RenderStats FastHistory::render(const SceneView& scene, const CpuTracer& tracer,
     coarse_ = 1;
   }
   const bool first = pictures_ == 0;
-  lamps_move_ = find_moving_lamps(scene);
+  lamps_move_ = find_moving_lamps(job.scene);
   const uint32_t passes = first ? realtime::kFirstPictures : 1;
-  RenderWatch watch(settings.progress,
-                    first ? IrradianceCache::kFirstRounds + realtime::kFirstPictures : 1);
-  for (uint32_t pass = 0; pass < passes && !watch.stopped(); ++pass) {
-    add_picture(scene, tracer, camera, settings, pass, &watch);
-  }
+  RenderWatch watch(job.settings.progress,
+                    first ? IrradianceCache::kFirstRounds + realtime::kFirstPictures : 1,
+                    *job.slices);
+  for (uint32_t pass = 0; pass < passes && !watch.stopped(); ++pass) add_picture(job, pass, &watch);
   parallel_for("fast film", film->height, [&](int64_t y) {
     for (int x = 0; x < film->width; ++x) {
       film->radiance[static_cast<size_t>(y) * film->width + x] =

@@ -1,6 +1,7 @@
 #pragma once
 // The fast tier: what a camera remembers from picture to picture, and one picture more.
 
+#include "render/cpu/path/tile.h"
 #include "render/cpu/realtime/fast_filter.h"
 #include "render/cpu/realtime/irradiance_cache.h"
 #include "render/renderer.h"
@@ -28,15 +29,13 @@ struct LampPlace {
 
 class FastHistory final : public ViewHistory {
  public:
-  /// Renders into film->radiance.
-  RenderStats render(const SceneView& scene, const CpuTracer& tracer, const CameraView32& camera,
-                     const RenderSettings& settings, Film* film);
+  /// Renders into job.film->radiance.
+  RenderStats render(const Job& job);
 
  private:
   /// One picture of the sequence; `pass` tells those of one instant apart.
-  void add_picture(const SceneView& scene, const CpuTracer& tracer, const CameraView32& camera,
-                   const RenderSettings& settings, uint32_t pass, RenderWatch* watch);
-  void trace(const FastView& view, uint32_t pass);
+  void add_picture(const Job& job, uint32_t pass, RenderWatch* watch);
+  void trace(const FastView& view, uint32_t pass, RenderSlices* slices);
   /// Traces the tile from the pixel (x0, y0) on. Returns the number of rays.
   uint64_t trace_tile(const FastView& view, uint32_t pass, int x0, int y0, AskedOfTile* asked);
   /// Whether lamps have moved since the last picture; stores their places.

@@ -257,17 +257,20 @@ uint64_t FastHistory::trace_tile(const FastView& view, uint32_t pass, int x0, in
   return rays;
 }
 
-void FastHistory::trace(const FastView& view, uint32_t pass) {
+void FastHistory::trace(const FastView& view, uint32_t pass, RenderSlices* slices) {
   Sampler pattern = Sampler::make(0, 0, 0, 0, pictures_ % realtime::kPixelPoints, 3);
   now_.offset = pattern.next_2d() - Vec2f{0.5f, 0.5f};
   near_offset_ = pattern.next_2d();
   const int columns = (now_.width + kTile - 1) / kTile, rows = (now_.height + kTile - 1) / kTile;
   asked_.resize(static_cast<size_t>(columns) * static_cast<size_t>(rows));
   std::vector<uint64_t> traced(asked_.size());
-  parallel_for("fast tiles", static_cast<int64_t>(asked_.size()), [&](int64_t tile) {
+  slices->run("fast tiles", static_cast<int64_t>(asked_.size()), [&](int64_t tile) {
     const auto [row, column] = std::div(tile, int64_t{columns});
+    SceneView plain = view.scene;  // rays of pixels go where they must
+    plain.guide.probability = 0;
     traced[static_cast<size_t>(tile)] =
-        trace_tile(view, pass, static_cast<int>(column) * kTile, static_cast<int>(row) * kTile,
+        trace_tile({plain, view.tracer, view.camera, view.cache, view.seed}, pass,
+                   static_cast<int>(column) * kTile, static_cast<int>(row) * kTile,
                    &asked_[static_cast<size_t>(tile)]);
   });
   requests_.clear();

@@ -264,12 +264,15 @@ uint64_t IrradianceCache::trace(const SceneView& scene, const CpuTracer& tracer,
                        for (int64_t k = begin; k < end; ++k)
                          find_home(tracer, asked_[static_cast<size_t>(k)]);
                      });
-  parallel_for_range(
-      "irradiance cache", static_cast<int64_t>(asked_.size()), 4, [&](int64_t begin, int64_t end) {
-        for (int64_t k = begin; k < end && watch->may_continue(); ++k)
-          trace_cell(scene, tracer, cache, seed, remembers ? realtime::kRays : realtime::kFirstRays,
-                     static_cast<size_t>(k));
-      });
+  constexpr size_t kTask = 4;  // cells
+  watch->slices().run("irradiance cache", static_cast<int64_t>((asked_.size() + kTask - 1) / kTask),
+                      [&](int64_t task) {
+                        const size_t begin = static_cast<size_t>(task) * kTask;
+                        const size_t end = std::min(begin + kTask, asked_.size());
+                        for (size_t k = begin; k < end && watch->may_continue(); ++k)
+                          trace_cell(scene, tracer, cache, seed,
+                                     remembers ? realtime::kRays : realtime::kFirstRays, k);
+                      });
   of_cells_.clear();
   for (size_t k = 0; k < traced_.size(); ++k) {
     of_cells_.push_back({cells_[asked_[k]].key, traced_[k].excess, traced_[k].usual});
