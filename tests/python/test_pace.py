@@ -24,9 +24,7 @@ def test_time_waits_for_sensors_and_stats_tell_their_cost(model):
             time.sleep(0.02)
             frames.append(frame)
 
-        camera = sim.cameras["eye"]
-        camera.open(("depth",), width=8, height=8, rate=100, required=False)
-        camera.on_frame(slow) if hasattr(camera, "on_frame") else None
+        sim.cameras["eye"].open(("depth",), width=8, height=8, rate=100, required=False, callback=slow)
         sim.run_until(0.2)
         stats = sim.stats
         assert stats["pace"] == "sensors"
