@@ -87,8 +87,14 @@ enum class LiveFieldId {
   kMaterialReflectance,  ///< (nmat) 0..1, of planes and boxes
   kMaterialMetallic,     ///< (nmat) 0..1, -1 = not given
   kMaterialRoughness,    ///< (nmat) 0..1, -1 = not given: shininess counts
+  kActuatorGain,         ///< (nactuator x 10) gainprm
+  kActuatorBias,         ///< (nactuator x 10) biasprm: [1] = -kp and [2] = -kv of a position servo
+  kDofArmature,          ///< (nv) [kg or kg m²]
+  kDofDamping,           ///< (nv) [N s/m or N m s/rad]
+  kDofFrictionLoss,      ///< (nv) [N or N m]
+  kJointStiffness,       ///< (njnt) [N/m or N m/rad]
 };
-inline constexpr int kLiveFieldCount = static_cast<int>(LiveFieldId::kMaterialRoughness) + 1;
+inline constexpr int kLiveFieldCount = static_cast<int>(LiveFieldId::kJointStiffness) + 1;
 const char* live_field_name(LiveFieldId field);  ///< "gravity", as World::inputs() has it
 /// Name of its array in MuJoCo, as Instant::value takes it: "opt.gravity".
 const char* live_field_array(LiveFieldId field);
@@ -99,7 +105,7 @@ Result<LiveFieldId> find_live_field(std::string_view name);
 struct SetLiveField {
   LiveFieldId field = LiveFieldId::kGravity;
   int first = 0;
-  std::vector<float> values;
+  std::vector<double> values;
 };
 
 /// Commands that wait when the simulation is recompiled are for the things of the same names from

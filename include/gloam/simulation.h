@@ -61,10 +61,10 @@ class Simulation {
   virtual void resume() = 0;
   virtual void pause() = 0;
   virtual bool paused() const = 0;
-  /// Takes n steps and pauses again; blocks.
+  /// Takes n steps and pauses again; blocks. Short calls may run on the calling thread.
   virtual Status step(int64_t n) = 0;
   virtual void set_pace(Pace pace, double speed) = 0;
-  /// Makes run_until return early with ErrorKind::kInterrupted. Safe in signal handlers.
+  /// Makes run_until and step return early with ErrorKind::kInterrupted. Safe in signal handlers.
   virtual void request_stop() = 0;
   /// How the physics is: ok, or why it stopped.
   virtual Status status() const = 0;

@@ -2,6 +2,7 @@
 // Options and counts of a simulation.
 
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -34,6 +35,9 @@ struct SimulationOptions {
   Pace pace = Pace::kFast;
   double speed = 1;          ///< of Pace::kRealTime and Pace::kSensors, > 0
   DataMaker make_data = {};  ///< empty = the simulation makes its own
+  /// Called every 50 ms by a thread that waits in step() or run_until(). False: as after
+  /// Simulation::request_stop(). Empty = true.
+  std::function<bool()> keep_waiting = {};
 };
 
 /// Cost and rate of one stream of a simulation since it was opened.

@@ -65,6 +65,9 @@ struct TopicRequest {
   std::vector<std::string> topics;  ///< names; * stands for any text
   int width = 0, height = 0;        ///< of every camera's pictures [px]; 0 = the camera's own
   bool required = false;  ///< the simulation waits for its reader; else messages are lost, counted
+  /// A message whenever a topic that adds up over time looks at the simulation (/metrics: at
+  /// record.metrics_rate) instead of at the topic's rate.
+  bool every_sample = false;
   EndCallback on_end = {};
 };
 

@@ -100,6 +100,9 @@ class World {
   /// All that a simulation of it can say and hear: what bridges and logs go by.
   std::vector<StreamInfo> streams() const;
   std::vector<InputInfo> inputs() const;
+  /// Numbers of a live field (gloam/command.h) as the files give them: what a SetLiveField changes
+  /// and a reset restores. Error: no such field.
+  Result<std::vector<double>> live_field(const std::string& name) const;
   /// Columns of metrics.csv but the time. Error: a [[metric]] or [[goal]] of the scene that does
   /// not parse, or is of what there is not.
   Result<std::vector<MetricInfo>> metrics() const;

@@ -30,6 +30,7 @@ from .errors import (  # noqa: E402
     NotFoundError,
     PartialError,
     StoppedError,
+    StuckError,
     UnsupportedError,
     UsageError,
 )
@@ -54,6 +55,6 @@ set_log_level = _core.set_log_level
 __all__ = [
     "Actuator", "Body", "Camera", "Checkpoint", "ClosedError", "DivergedError", "Error", "ForkedError", "Frame", "InputError", "IoError", "Joint",
     "Lidar", "Log", "NotFoundError", "Option", "PartialError", "Policy", "Pose", "Robot", "RunReport", "Scan", "Scene", "Sensor", "Simulation",
-    "StoppedError", "Subscription", "UnsupportedError", "UsageError", "Verification", "World", "check", "configuration", "convert", "describe",
+    "StoppedError", "StuckError", "Subscription", "UnsupportedError", "UsageError", "Verification", "World", "check", "configuration", "convert", "describe",
     "distribute", "evaluate", "generate", "home", "load", "make_env", "make_vec_env", "render", "replay", "report", "run", "set_log_level", "set_thread_count", "yaw_quaternion",
 ]

@@ -12,7 +12,7 @@ from gloam import _core
 
 from .cameras import Frame
 from .elements import Pose
-from .errors import PartialError
+from .errors import PartialError, UsageError
 from .logs import Log, RunReport
 from .progress import ProgressLike, watch
 from .scene import Scene, as_scene
@@ -75,28 +75,39 @@ def check(model: PathLike, root: PathLike = "", strict: bool = False) -> dict[st
         return dict(_core.check_model(Path(model), Path(folder), os.fspath(root), strict))
 
 
-def _trajectory(source: Any, topic: str | None) -> Any:
-    if isinstance(source, Log):
-        return _core.Trajectory.make(*source.trajectory(topic or ""), source.file.name)
+def _trajectory(source: Any) -> Any:
+    if isinstance(source, tuple) and isinstance(source[0], Log):
+        log, topic = source
+        return _core.Trajectory.make(*log.trajectory(topic), f"{log.file}:{topic}")
     if isinstance(source, tuple):
         return _core.Trajectory.make(source[0], source[1])
-    path = Path(source)
-    if path.suffix == ".mcap":
-        return _trajectory(Log(path), topic)
-    read = _core.Trajectory.read(path)
-    for note in read.notes:
-        warnings.warn(note, stacklevel=3)
-    return read
+    file, _, topic = str(source.file if isinstance(source, Log) else os.fspath(source)).partition(":/")
+    if Path(file).suffix != ".mcap":
+        return _core.Trajectory.read(Path(source))
+    log = source if isinstance(source, Log) else Log(file)
+    return _trajectory((log, f"/{topic}" if topic else _only_pose_topic(log)))
 
 
-def evaluate(reference: Any, estimate: Any, alignment: str = "none", *, reference_topic: str | None = None, estimate_topic: str | None = None,
-             max_difference: float = 0.01, delta: float = 1.0) -> dict[str, Any]:
-    """ATE and RPE of two trajectories as evo defines them: files (TUM, KITTI, EuRoC), logs with a topic, or (times, poses (n, 7)).
+def _only_pose_topic(log: Log) -> str:
+    topics = list(_core.trajectory_topics(log.file))
+    if len(topics) != 1:
+        raise UsageError(f"the log has several topics of poses: {', '.join(topics)}" if topics else "the log has no topic of poses",
+                         hint="name one, as in 'run.mcap:/odom'; a frame of /tf as in 'run.mcap:/tf:robot/base'")
+    return str(topics[0])
 
-    `alignment`: none, origin, se3, sim3, scale; `delta` in frames. Returns "ate", "ate_angle", "rpe", "rpe_angle": rmse, mean, median, std, min,
-    max, sse, values.
+
+def evaluate(estimate: Any, reference: Any, *, align: str = "se3", rpe_delta: float | None = None, rpe_unit: str = "m", all_pairs: bool = False,
+             rpe_tolerance: float = 0.1, max_difference: float = 0.01, offset: float = 0.0) -> dict[str, Any]:
+    """ATE and RPE of an estimated trajectory against a reference, with the names, defaults and results of `gloam evaluate --json`.
+
+    Each side is a file (TUM, KITTI, EuRoC), a topic of a log ("run.mcap:/odom", or (log, "/odom")), or (times (n,) [s], poses (n, 7): x, y, z,
+    qw, qx, qy, qz). `align`: se3, sim3, scale, origin or none. `rpe_delta` (None = 1) in `rpe_unit`: m along the way, f frames, s, deg or rad.
+    Returns "ate" and "rpe", each with "translation_m", "angle_rad" and "full": rmse, mean, median, std, min, max, sse, count and "values";
+    "align", "pairs", lengths. "rpe" is None where the trajectory is shorter than the delta of 1 that nobody asked for.
     """
-    return dict(_core.evaluate(_trajectory(reference, reference_topic), _trajectory(estimate, estimate_topic), alignment, max_difference, delta))
+    options = {"align": align, "rpe_delta": rpe_delta, "rpe_unit": rpe_unit, "all_pairs": all_pairs, "rpe_tolerance": rpe_tolerance,
+               "max_difference": max_difference, "offset": offset}
+    return dict(_core.evaluate(_trajectory(estimate), _trajectory(reference), options))
 
 
 def report(runs: Sequence[PathLike], out: PathLike, *, title: str = "", overwrite: bool = False) -> list[str]:

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from gloam import _core
 
-from .elements import Doubles, Pose
+from .elements import Doubles, Pose, read_only
 
 if TYPE_CHECKING:
     from .simulation import Simulation
@@ -265,16 +265,17 @@ class Sensor(Source):
 
     @property
     def values(self) -> Doubles:
-        """The truth of the last step, live, as MuJoCo has it; of a probe its last sample since it was opened."""
+        """The truth of the last step, live, as MuJoCo has it; of a probe its last sample since it was opened. For reading."""
         sim = self._sim
         if self.name in sim.world.probes:
             for _ in self._waiting():
                 pass
-            return np.array(self._last.values if self._last is not None else (), dtype=np.float64)
+            return read_only(np.array(self._last.values if self._last is not None else (), dtype=np.float64))
         index = sim._core_world.find_sensor(self.name).id
         memory = sim.memory
         start = int(memory.array("sensor_adr")[index])
-        return cast("Doubles", memory.array("sensordata")[start:start + int(memory.array("sensor_dim")[index])])
+        values = memory.array("sensordata")[start:start + int(memory.array("sensor_dim")[index])]
+        return read_only(values)
 
     def next(self) -> Any:
         """Steps until its next sample reaches a reader: .values, .stamp, .delivery."""

@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from gloam import _core
 
+from .dynamics import Dynamics
 from .errors import InputError, NotFoundError, UsageError
 
 if TYPE_CHECKING:
@@ -23,8 +24,9 @@ T = TypeVar("T")
 class Named(Mapping[str, T], Generic[T]):
     """Elements by name; they are made when they are asked for."""
 
-    def __init__(self, what: str, names: Callable[[], Sequence[str]], make: Callable[[str], T]) -> None:
+    def __init__(self, what: str, names: Callable[[], Sequence[str]], make: Callable[[str], T], owner: str = "") -> None:
         self._what = what
+        self._owner = owner  # " of robot 'go'"
         self._names = names
         self._make = make
         self._made: dict[str, T] = {}
@@ -35,9 +37,15 @@ class Named(Mapping[str, T], Generic[T]):
                 raise TypeError(f"a {self._what} is asked for by its name, not by {name!r}")
             names = list(self._names())
             if name not in names:
-                raise NotFoundError(f"there is no {self._what} '{name}'", hint=_core.suggest_name(name, names))
+                raise NotFoundError(f"there is no {self._what} '{name}'{self._owner}", hint=_core.suggest_name(name, names))
             self._made[name] = self._make(name)
         return self._made[name]
+
+    def forget_world(self) -> None:
+        """Lets go of arrays and handles of the World before."""
+        for element in self._made.values():
+            if isinstance(element, Element):
+                element.forget_world()
 
     def __iter__(self) -> Iterator[str]:
         return iter(self._names())
@@ -87,6 +95,8 @@ def yaw_quaternion(yaw: float) -> Doubles:
 class Element:
     """Something of the model with a name. After a recompile it is that of the same name, or raises NotFoundError."""
 
+    _of_world: tuple[str, ...] = ()  # attributes that _changed() makes
+
     def __init__(self, sim: Simulation, name: str) -> None:
         self._sim = sim
         self.name = name
@@ -111,12 +121,21 @@ class Element:
     def _changed(self) -> None:
         """Looks up what depends on the World."""
 
+    def forget_world(self) -> None:
+        """Lets go of arrays and handles; they are looked up again when they are needed."""
+        self._generation = -1
+        self._handle = None
+        for name in self._of_world:
+            self.__dict__.pop(name, None)
+
     def __repr__(self) -> str:
         return f"<gloam.{type(self).__name__} '{self.name}'>"
 
 
 class Joint(Element):
     """A joint. `qpos` and `qvel` are live views of the state, writable while the simulation is paused."""
+
+    _of_world = ("_qpos", "_qvel")
 
     def _find(self) -> Any:
         return self._sim._core_world.find_joint(self.name)
@@ -171,17 +190,17 @@ class Body(Element):
     @property
     def pose(self) -> Pose:
         """X_WB"""
-        return Pose(*self._state()[0])
+        return Pose(*(read_only(part) for part in self._state()[0]))
 
     @property
     def velocity(self) -> Doubles:
         """Velocity of its origin [m/s], (3,)."""
-        return np.asarray(self._state()[1])
+        return read_only(self._state()[1])
 
     @property
     def angular_velocity(self) -> Doubles:
         """[rad/s], (3,)"""
-        return np.asarray(self._state()[2])
+        return read_only(self._state()[2])
 
     def push(self, force: ArrayLike = (0, 0, 0), torque: ArrayLike = (0, 0, 0), duration: float | None = None) -> None:
         """Force [N] and torque [N m] at its centre of mass, world axes, until changed or for `duration` [s]."""
@@ -207,7 +226,8 @@ class Actuator(Element):
 
     @property
     def control(self) -> float:
-        return float(self._sim.memory.array("ctrl")[self._now().id])
+        memory = self._sim.memory
+        return float(memory.array("ctrl")[memory.array("actuator_ctrladr")[self._now().id]])
 
     @control.setter
     def control(self, value: float) -> None:
@@ -222,7 +242,13 @@ class Actuator(Element):
 
 
 class Robot(Element):
-    """A robot: its root, joints and actuators, and what drives it."""
+    """A robot: its root, joints and actuators, and what drives it.
+
+    `qpos`, `qvel` and `controls` are live where their elements lie side by side in MuJoCo's arrays, as they do in most models: what is written into
+    them while the simulation is paused is an input of the next step. Otherwise they are copies that cannot be written.
+    """
+
+    _of_world = ("_qpos", "_qvel", "_ctrl", "_info")
 
     def _find(self) -> Any:
         for robot in self._sim._core_world.robots():
@@ -241,7 +267,8 @@ class Robot(Element):
         self._qpos = _Picked(memory, "qpos", [int(memory.array("jnt_qposadr")[j]) for j in single])
         self._qvel = _Picked(memory, "qvel", [int(memory.array("jnt_dofadr")[j]) for j in single])
         self._single_names = [names["joints"][j] for j in single]
-        self._ctrl = _Picked(memory, "ctrl", [a.id for a in self._info["actuators"]])
+        addresses = memory.array("actuator_ctrladr")
+        self._ctrl = _Picked(memory, "ctrl", [int(addresses[a.id]) for a in self._info["actuators"]])
 
     @property
     def joint_names(self) -> list[str]:
@@ -256,15 +283,15 @@ class Robot(Element):
         return list(self._actuator_names)
 
     @property
-    def joints(self) -> dict[str, Joint]:
+    def joints(self) -> Mapping[str, Joint]:
         """All its joints, also by their names without the robot's prefix."""
         self._now()
-        return _short({n: self._sim.joints[n] for n in self._joint_names if n}, self.name)
+        return _short("joint", {n: self._sim.joints[n] for n in self._joint_names if n}, self.name)
 
     @property
-    def actuators(self) -> dict[str, Actuator]:
+    def actuators(self) -> Mapping[str, Actuator]:
         self._now()
-        return _short({n: self._sim.actuators[n] for n in self._actuator_names if n}, self.name)
+        return _short("actuator", {n: self._sim.actuators[n] for n in self._actuator_names if n}, self.name)
 
     @property
     def root(self) -> Body:
@@ -275,23 +302,23 @@ class Robot(Element):
     def pose(self) -> Pose:
         """X_WB of its root."""
         self._now()
-        return Pose(*self._sim._solver.body(self._sim._core, self._info["root"])[0])
+        return Pose(*(read_only(part) for part in self._sim._solver.body(self._sim._core, self._info["root"])[0]))
 
     @property
     def velocity(self) -> Doubles:
         """Velocity of its root's origin, world axes [m/s], (3,)."""
         self._now()
-        return np.asarray(self._sim._solver.body(self._sim._core, self._info["root"])[1])
+        return read_only(self._sim._solver.body(self._sim._core, self._info["root"])[1])
 
     @property
     def angular_velocity(self) -> Doubles:
         """[rad/s], world axes, (3,)"""
         self._now()
-        return np.asarray(self._sim._solver.body(self._sim._core, self._info["root"])[2])
+        return read_only(self._sim._solver.body(self._sim._core, self._info["root"])[2])
 
     @property
     def qpos(self) -> Doubles:
-        """Positions of its hinge and slide joints [rad, m], (n,); live where they stand side by side in the state."""
+        """Positions of its hinge and slide joints [rad, m], (n,)."""
         self._now()
         return self._qpos.array()
 
@@ -303,9 +330,10 @@ class Robot(Element):
 
     @property
     def controls(self) -> Doubles:
-        """Controls of its actuators, each in its own unit, (n,). Assigned, they apply from the next step on."""
+        """Controls of its actuators, each in its own unit, (n,). Assigned, they apply from the next step on, before its controller; written into the
+        array, after it."""
         self._now()
-        return self._ctrl.array().copy()
+        return self._ctrl.array()
 
     @controls.setter
     def controls(self, values: ArrayLike) -> None:
@@ -315,13 +343,18 @@ class Robot(Element):
         """Velocity goal of its controller in its heading frame [m/s, m/s, rad/s]; stays until changed."""
         self._sim._core.set_velocity_goal(self._now(), (vx, vy, yaw_rate), lease=self._sim._leases.get(self.name))
 
+    def scale_dynamics(self, *, mass: ArrayLike | None = None, friction: ArrayLike | None = None, gains: ArrayLike | None = None,
+                       armature: ArrayLike | None = None, damping: ArrayLike | None = None) -> None:
+        """As Simulation.scale_dynamics(), for the robot's own bodies, geoms, actuators and joints, in the model's order."""
+        self._now()
+        actuators = [actuator.id for actuator in self._info["actuators"]]
+        Dynamics(self._sim, self._info["root"].id, actuators).scale(mass=mass, friction=friction, gains=gains, armature=armature, damping=damping)
+
     def set_joint_goals(self, goals: Mapping[str, float]) -> None:
         """Positions [rad, m] by joint names, with or without the robot's prefix, for its controller."""
         joints = self.joints
-        for name, position in goals.items():
-            if name not in joints:
-                raise NotFoundError(f"robot '{self.name}' has no joint '{name}'", hint=_core.suggest_name(name, list(joints)))
-            joints[name].set_goal(position)
+        for joint, position in [(joints[name], position) for name, position in goals.items()]:
+            joint.set_goal(position)
 
     def set_joints(self, qpos: ArrayLike | None = None, qvel: ArrayLike | None = None) -> None:
         """Puts its hinge and slide joints somewhere else at the next step, (n,) each."""
@@ -357,7 +390,7 @@ class Robot(Element):
 
 
 class _Picked:
-    """Elements of a live array: a view where they stand side by side, else a copy."""
+    """Elements of a live array: a view where they lie side by side, else a copy for reading."""
 
     def __init__(self, memory: Any, name: str, places: list[int]) -> None:
         self._array: Doubles = memory.array(name)
@@ -367,7 +400,7 @@ class _Picked:
         self._view: Doubles | None = self._array[places[0]:places[0] + n] if is_row else None
 
     def array(self) -> Doubles:
-        return self._array[self._places] if self._view is None else self._view
+        return read_only(self._array[self._places]) if self._view is None else self._view
 
 
 def _sized(values: ArrayLike, n: int, what: str) -> Doubles:
@@ -377,6 +410,14 @@ def _sized(values: ArrayLike, n: int, what: str) -> Doubles:
     return array
 
 
-def _short(elements: dict[str, T], robot: str) -> dict[str, T]:
+def read_only(values: ArrayLike) -> Doubles:
+    """An array of which a change would reach nobody."""
+    array = np.asarray(values, dtype=np.float64)
+    array.flags.writeable = False
+    return array
+
+
+def _short(what: str, elements: dict[str, T], robot: str) -> Named[T]:
     short = {name.removeprefix(robot + "/"): element for name, element in elements.items()}
-    return {**short, **elements}
+    both = {**short, **elements}
+    return Named(what, lambda: list(both), both.__getitem__, f" of robot '{robot}'")

@@ -64,5 +64,9 @@ class ClosedError(Error, RuntimeError):
     """The simulation or stream was closed."""
 
 
+class StuckError(Error, RuntimeError):
+    """A callback or hook has not returned: what was closed is closed, but its thread is left behind."""
+
+
 class ForkedError(Error, RuntimeError):
     """The object belongs to another process."""

@@ -13,7 +13,7 @@ class PresentMetrics:
     """The last message of /metrics, decoded."""
 
     def __init__(self, sim: Simulation) -> None:
-        self._stream = _core.open_topics(sim._core, ["/metrics"], True, None)
+        self._stream = _core.open_topics(sim._core, ["/metrics"], True, None, every_sample=True)
         self._values: dict[str, float] = {}
 
     def values(self) -> dict[str, float]:

@@ -6,6 +6,8 @@ import sys
 import weakref
 from typing import Any
 
+import numpy as np
+
 from gloam import _core
 
 
@@ -21,6 +23,7 @@ class MujocoMemory:
         self._mujoco = mujoco
         self._models: weakref.WeakValueDictionary[int, Any] = weakref.WeakValueDictionary()  # by the address of their mjData
         self._datas: weakref.WeakValueDictionary[int, Any] = weakref.WeakValueDictionary()
+        self._guarded: weakref.WeakValueDictionary[int, Any] = weakref.WeakValueDictionary()  # models whose other arrays are read only
 
     @classmethod
     def for_this_process(cls) -> MujocoMemory | None:
@@ -44,16 +47,26 @@ class MujocoMemory:
                           f"simulation is made: pip install 'mujoco~={wanted}.0'; sim.memory.array(…) works without it")
 
     def make(self, keeper: Any) -> tuple[int, Any]:
-        """(address of a new mjData, object that keeps it), for a model of the simulation's, whose arrays `keeper` keeps."""
-        model = self._mujoco.MjModel._from_model_ptr(keeper.borrow())
+        """(address of a new mjData, what keeps it and its model), for a model of the simulation's, whose arrays `keeper` keeps."""
+        model = self._mujoco.MjModel._from_model_ptr(keeper.lend())
         weakref.finalize(model, lambda _: None, keeper).atexit = False  # arrays of the model outlive the simulation
         data = self._mujoco.MjData(model)
         self._models[data._address] = model
         self._datas[data._address] = data
-        return data._address, data
+        return data._address, (data, model)
 
     def data(self, memory: Any) -> Any:
         return self._datas[memory.data_address]
 
     def model(self, memory: Any) -> Any:
-        return self._models[memory.data_address]
+        """The model, of which only arrays of live fields may be written: the others cannot change while physics steps with them."""
+        address = memory.data_address
+        model = self._models[address]
+        if self._guarded.get(address) is not model:
+            writable = set(_core.writable_model_arrays())
+            for name in dir(model):
+                array = getattr(model, name, None) if not name.startswith("_") else None
+                if isinstance(array, np.ndarray) and name not in writable:
+                    array.flags.writeable = False
+            self._guarded[address] = model
+        return model

@@ -39,21 +39,36 @@ def _schema() -> dict[str, Any]:
 
 
 def describe(path: str) -> str:
-    """What an option means, as its place in the documentation says: describe("weather.visibility"). "" where it is unknown."""
+    """What an option means, as its place in the documentation says: describe("weather.visibility"), describe("robot.go.position"), where "go" may be
+    any name. Raises NotFoundError, with the nearest name, where there is no such option.
+    """
     node: Any = _schema()
     root = node
+    may_be_a_name = False  # of an element of the list that came before
     for part in path.split("."):
         node = _resolve(node, root)
         inner = node.get("properties", {})
-        if part in inner:
-            node = inner[part]
-            resolved = _resolve(node, root)
-            if resolved.get("type") == "array" and "items" in resolved:
-                items = _resolve(resolved["items"], root)
-                if "properties" in items:
-                    node = items
-        # Else the part is the name of an element of a list: it leads nowhere.
+        if part not in inner:
+            if may_be_a_name or isinstance(node.get("additionalProperties"), dict) or ("properties" not in node and node is not root):
+                may_be_a_name = False
+                continue
+            raise NotFoundError(f"there is no option '{path}': no '{part}' is known", hint=_core.suggest_name(part, list(inner)))
+        node = inner[part]
+        may_be_a_name = False
+        resolved = _resolve(node, root)
+        if resolved.get("type") == "array" and "items" in resolved:
+            items = _resolve(resolved["items"], root)
+            if "properties" in items:
+                node = items
+                may_be_a_name = True
     return str(node.get("description", ""))
+
+
+def _description(path: str) -> str:
+    try:
+        return describe(path)
+    except NotFoundError:
+        return ""
 
 
 def _resolve(node: Any, root: Any) -> Any:
@@ -118,6 +133,16 @@ class Scene:
     def copy(self) -> Self:
         return self._of(self._scene.copy())
 
+    __copy__ = copy
+
+    def __deepcopy__(self, _: dict[int, Any]) -> Self:
+        return self.copy()
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Pickled, it is its options: files that it names are read again where it is compiled."""
+        root, strict = self._scene.access
+        return _unpickled, (type(self), self.to_toml(), os.fspath(self._scene.bare_model), os.fspath(self.file), os.getcwd(), root, strict, self.name)
+
     def __getitem__(self, path: str) -> Any:
         """Value of an option; None where it is not given."""
         try:
@@ -141,7 +166,7 @@ class Scene:
 
     def options(self) -> list[Option]:
         """All options of the tables that stand in the scene."""
-        return [Option(o["path"], _toml.from_text(o["value"]), o["unit"], o["low"], o["high"], tuple(o["choices"]), describe(o["path"]))
+        return [Option(o["path"], _toml.from_text(o["value"]), o["unit"], o["low"], o["high"], tuple(o["choices"]), _description(o["path"]))
                 for o in self._scene.options()]
 
     def __iter__(self) -> Iterator[str]:
@@ -198,6 +223,15 @@ def _is_list(table: str) -> bool:
         if node is None:
             raise NotFoundError(f"a scene has no table '{table}'", hint=_core.suggest_name(table, list(root.get("properties", {}))))
     return _resolve(node, root).get("type") == "array" or "items" in _resolve(node, root)
+
+
+def _unpickled(cls: type[Scene], text: str, model: str, file: str, folder: str, root: str, strict: bool, name: str) -> Scene:
+    if model not in ("", "."):
+        return cls(Path(folder, model), root, strict)
+    path = Path(folder, file) if file not in ("", ".") else None
+    scene = cls.parse(text, path.parent if path else folder, root, strict)
+    scene._scene.set_origin(name, path or Path())
+    return scene
 
 
 def as_scene(source: Any) -> Scene:

@@ -3,6 +3,7 @@ from __future__ import annotations
 
 import atexit
 import os
+import sys
 import weakref
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
@@ -15,8 +16,9 @@ from numpy.typing import ArrayLike
 from gloam import _core
 
 from .cameras import Camera, Frame, Lidar, Scan, Sensor, Source, Subscription
+from .dynamics import Dynamics
 from .elements import Actuator, Body, Joint, Named, Robot
-from .errors import UsageError
+from .errors import StuckError, UsageError
 from .mujoco_memory import MujocoMemory
 from .progress import ProgressLike
 from .scene import Scene, as_scene
@@ -130,8 +132,15 @@ class Simulation:
 
     @property
     def model(self) -> Any:
-        """mujoco.MjModel of the same arrays as the model that is stepped, for reading. ImportError without the package mujoco."""
-        return MujocoMemory.required(self._mujoco).model(self.memory)
+        """mujoco.MjModel of the model that is stepped. ImportError without the package mujoco.
+
+        Arrays of live fields (body_mass, geom_friction, actuator_gainprm, dof_damping, opt.gravity …) may be written while the simulation is paused:
+        that is an input of the next step, as set_live_field() is, and a reset takes it back. Other arrays are read only; writing another option
+        (opt.timestep …) or writing by name (model.geom("ball").size) raises UsageError at the next step.
+        """
+        model = MujocoMemory.required(self._mujoco).model(self.memory)
+        self._core.watch_model()
+        return model
 
     @property
     def data(self) -> Any:
@@ -156,7 +165,8 @@ class Simulation:
 
     @property
     def metrics(self) -> dict[str, float]:
-        """Present values of all metrics that the scene has (docs/metrics.md); they count from the first time they are asked for."""
+        """Present values of all metrics that the scene has (docs/metrics.md), sampled at record.metrics_rate as in a recorded run; they count from
+        the first time they are asked for."""
         from .metrics import PresentMetrics
 
         if self._metrics is None:
@@ -225,24 +235,51 @@ class Simulation:
         self._take_world(world)
 
     def _take_world(self, world: World) -> None:
+        """Goes on in another World, and keeps nothing of the one before, which may have 100 MB."""
         self._world = world
         self._core_world = world._world
         self._renderer = None
+        self._solver = _core.Solver()
+        if self._other is not None:
+            self._other.close()
+            self._other = None
+        if self._memory is not None:
+            self._look()
+        for elements in (self.joints, self.bodies, self.actuators, self.robots):
+            elements.forget_world()
         if self._metrics is not None:
             self._metrics.close()
             self._metrics = None
 
     def set_live_field(self, field: str, values: Any, first: int = 0) -> None:
-        """Changes a field of the model that may change while it runs: "gravity", "light_intensity", "geom_color" … (docs/library.md)."""
+        """Changes a field of the model at the next step, from element `first` on: "gravity", "body_mass", "geom_color" … (docs/python.md).
+
+        A logged input like any other: a replay repeats it, a reset takes it back. No World is compiled.
+        """
         self._core.set_live_field(field, first, values)
+
+    def scale_dynamics(self, *, mass: ArrayLike | None = None, friction: ArrayLike | None = None, gains: ArrayLike | None = None,
+                       armature: ArrayLike | None = None, damping: ArrayLike | None = None) -> None:
+        """Changes how all of it moves, until the reset: factors of what the model's files say, one number or one for each element.
+
+        Bodies' masses, with their inertias; friction of geoms; gains of actuators; armature and damping of joints. Logged inputs of the next step
+        that need no recompile, for domain randomisation. A factor of 1 takes an earlier one back. Robot.scale_dynamics() is for one robot.
+        """
+        Dynamics(self).scale(mass=mass, friction=friction, gains=gains, armature=armature, damping=damping)
 
     def on_step(self, hook: Callable[[Any], None] | None) -> None:
         """Calls hook(memory) before every step, on the physics thread, which waits for Python: slow. None = no longer."""
         if hook is None:
             self._core.set_hook(None)
             return
-        memory = self.memory
-        self._core.set_hook(lambda: hook(memory))
+        sim = weakref.ref(self)
+
+        def call() -> None:
+            if (alive := sim()) is not None:
+                hook(alive.memory)
+
+        assert self.memory is not None
+        self._core.set_hook(call)
 
     # ---- topics ----
     def topics(self) -> list[dict[str, Any]]:
@@ -315,19 +352,25 @@ class Simulation:
 
     # ---- end ----
     def close(self) -> None:
-        """Ends it and its streams. Arrays stay readable."""
-        if not self._core.is_closed:
-            if self._log is not None:
-                self._log.finish()
-            self._core.close()
-        if self._other is not None:
-            self._other.close()
+        """Ends it and its streams. Arrays stay readable. Raises StuckError where a callback or hook has not returned after 5 s."""
+        try:
+            if not self._core.is_closed:
+                if self._log is not None:
+                    self._log.finish()
+                self._core.close()
+        finally:
+            if self._other is not None:
+                self._other.close()
 
     def __enter__(self) -> Simulation:
         return self
 
     def __exit__(self, *_: object) -> None:
         self.close()
+
+    def __reduce__(self) -> Any:
+        raise TypeError("a running Simulation cannot be pickled or copied: send its scene, which can (sim.scene), and load it where it is needed; "
+                        "checkpoint() and restore() go back to an instant of the same simulation")
 
     def __repr__(self) -> str:
         if self._core.is_closed:
@@ -339,7 +382,10 @@ class Simulation:
 def _close_all() -> None:
     _core.destroy_deferred()
     for sim in list(_alive):
-        sim.close()
+        try:
+            sim.close()
+        except StuckError as error:  # a callback that never returns must not keep the interpreter
+            print(f"gloam: {error}", file=sys.stderr)
 
 
 def load(source: Any, seed: int | None = None, timestep: float | None = None, pace: Pace = "lockstep", speed: float = 1.0, *,

@@ -99,5 +99,9 @@ class World:
         """Writes the whole level as one MJCF with its assets into FOLDER/scene.xml. Returns what MJCF cannot hold."""
         return list(self._world.export_mjcf(Path(folder)))
 
+    def __reduce__(self) -> Any:
+        raise TypeError("a World cannot be pickled or copied: send its scene, which can (world.scene), and compile() it where it is needed; threads may "
+                        "share one World")
+
     def __repr__(self) -> str:
         return f"<gloam.World: {len(self.robots)} robots, {len(self.bodies)} bodies>"

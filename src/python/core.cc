@@ -118,6 +118,20 @@ void wait_for(const std::function<void()>& job, const std::function<void()>& sto
   if (thrown) std::rethrow_exception(thrown);
 }
 
+bool wait_patiently(const std::function<bool()>& is_done) {
+  using Clock = std::chrono::steady_clock;
+  constexpr std::chrono::milliseconds kNap{1};
+  for (const auto end = Clock::now() + kPatience; !is_done();) {
+    if (Clock::now() > end) return false;
+    {
+      const nb::gil_scoped_release released;
+      std::this_thread::sleep_for(kNap);
+    }
+    if (PyErr_CheckSignals() != 0) throw nb::python_error();
+  }
+  return true;
+}
+
 ProgressCallback PythonProgress::callback() {
   return [this](const Progress& progress) { return !stopped_ && tell(progress) && !stopped_; };
 }

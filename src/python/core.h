@@ -14,6 +14,7 @@
 #include <nanobind/stl/vector.h>
 
 #include <atomic>
+#include <chrono>
 #include <functional>
 #include <memory>
 #include <mutex>
@@ -44,6 +45,12 @@ T take(Result<T> result) {
   if (!result.ok()) raise(result.error());
   return std::move(result).value();
 }
+
+/// Time in which callbacks and hooks have to return when their stream or simulation is closed.
+constexpr std::chrono::seconds kPatience{5};
+/// Waits until `is_done`, kPatience at most, with the interpreter free meanwhile. Whether it was.
+/// Ctrl-C is raised.
+bool wait_patiently(const std::function<bool()>& is_done);
 
 /// Runs `job` on another thread while this one looks after signals: a Ctrl-C calls `stop` and is
 /// raised once the job has ended. For what may take longer than a tenth of a second.

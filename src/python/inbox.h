@@ -5,6 +5,8 @@
 #include <functional>
 #include <memory>
 #include <mutex>
+#include <string>
+#include <thread>
 
 #include "core.h"
 #include "gloam/stream.h"
@@ -21,15 +23,27 @@ struct Waiting {
 class Inbox {
  public:
   /// `callback`: called for each message on the stream's thread, in place of keeping it; or none.
-  Inbox(int capacity, nb::object callback)
-      : capacity_(capacity), has_callback_(!callback.is_none()), callback_(std::move(callback)) {}
-  ~Inbox() { close(); }
+  Inbox(std::string name, int capacity, nb::object callback)
+      : name_(std::move(name)),
+        capacity_(capacity),
+        has_callback_(!callback.is_none()),
+        callback_(std::move(callback)) {}
 
   void open(std::unique_ptr<Stream> stream, int64_t from) {
     stream_ = std::move(stream);
     next_from_ = from;
   }
+  /// Raises a StuckError where the callback does not return within kPatience: the stream is then
+  /// left behind.
   void close();
+  /// The same without raising. False: this must not be deleted.
+  bool try_close();
+  const std::string& name() const { return name_; }
+  bool is_in_callback() const { return is_in_callback_; }
+  /// From now on no callback begins.
+  void refuse_callbacks() { is_closing_ = true; }
+  /// Keeps the stream and this for a callback that may return one day.
+  void leave_behind();
   Stream& stream();
   bool is_open() const { return stream_ != nullptr; }
 
@@ -49,6 +63,7 @@ class Inbox {
   void set_next_from(int64_t step) { next_from_ = step; }
 
  private:
+  const std::string name_;  // "camera 'front'"
   const int capacity_;
   const bool has_callback_;
   nb::object callback_;
@@ -56,6 +71,9 @@ class Inbox {
   std::mutex mutex_;
   std::deque<Waiting> waiting_;
   FirstError error_;  // of the callback
+  std::atomic<bool> is_in_callback_{false}, is_closing_{false};
+  bool is_left_behind_ = false;
+  std::atomic<std::thread::id> callback_thread_{};
   std::atomic<int64_t> lost_{0};
   int64_t next_from_ = 0;
 };

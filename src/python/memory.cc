@@ -6,6 +6,8 @@
 #include <map>
 #include <type_traits>
 
+#include "gloam/program.h"
+
 namespace gloam::python {
 namespace {
 
@@ -68,18 +70,13 @@ const std::map<std::string, Maker>& data_fields() {
   return fields;
 }
 
-/// Keeps the arrays of a model for whoever looks at them.
+/// Keeps the arrays of a model for its readers.
 struct ModelKeeper {
-  std::shared_ptr<mjModel_> model;
+  std::shared_ptr<ModelMirror> mirror;
 };
 
-// A struct with the same arrays, to be freed by mj_deleteModel, which finds no buffer in it.
-uintptr_t borrow_model(const ModelKeeper& keeper) {
-  auto* borrowed = static_cast<mjModel*>(mju_malloc(sizeof(mjModel)));
-  if (borrowed == nullptr) throw std::bad_alloc();
-  *borrowed = *keeper.model;
-  borrowed->buffer = nullptr;
-  return reinterpret_cast<uintptr_t>(borrowed);
+uintptr_t lend_model(const ModelKeeper& keeper) {
+  return reinterpret_cast<uintptr_t>(keeper.mirror->lend());
 }
 
 nb::object array_of(nb::handle self, const std::string& name) {
@@ -90,22 +87,26 @@ nb::object array_of(nb::handle self, const std::string& name) {
     nb::object array = found->second(memory, self);
     if (!array.is_none()) return array;
   }
-  raise("NotFoundError", "MuJoCo has no array '" + name + "'", "");
+  std::vector<std::string> names;
+  for (const auto* fields : {&data_fields(), &model_fields()})
+    for (const auto& [field, maker] : *fields) names.push_back(field);
+  raise("NotFoundError", "MuJoCo has no array '" + name + "'", suggest_name(name, names));
 }
 
 }  // namespace
 
-DataMaker data_maker(nb::object make) {
+DataMaker data_maker(nb::object make, std::shared_ptr<ModelMirrors> mirrors) {
   // Copies of the function are made and destroyed on threads without the interpreter.
   auto* kept = new nb::object(std::move(make));
   const std::shared_ptr<nb::object> shared(kept, [](nb::object* object) {
     const nb::gil_scoped_acquire acquired;
     delete object;
   });
-  return [shared](const std::shared_ptr<mjModel_>& model) -> std::shared_ptr<mjData_> {
+  return [shared, mirrors = std::move(mirrors)](
+             const std::shared_ptr<mjModel_>& model) -> std::shared_ptr<mjData_> {
     const nb::gil_scoped_acquire acquired;
     try {
-      const nb::object made = (*shared)(nb::cast(ModelKeeper{model}));
+      const nb::object made = (*shared)(nb::cast(ModelKeeper{mirrors->make(model)}));
       auto* data = reinterpret_cast<mjData_*>(nb::cast<uintptr_t>(made[0]));
       auto* owner = new nb::object(made[1]);
       return {data, [owner, model](mjData_*) {
@@ -126,7 +127,8 @@ void bind_memory(nb::module_& m) {
       .def_prop_ro("data_address",
                    [](const PhysicsMemory& p) { return reinterpret_cast<uintptr_t>(p.data.get()); })
       .def_prop_ro("time", [](const PhysicsMemory& p) { return double{p.data->time}; });
-  nb::class_<ModelKeeper>(m, "ModelKeeper").def("borrow", &borrow_model);
+  nb::class_<ModelKeeper>(m, "ModelKeeper").def("lend", &lend_model);
+  m.def("writable_model_arrays", &ModelMirror::writable);
   m.def("mujoco_version", [] { return std::string(mj_versionString()); });
 }
 

@@ -2,6 +2,7 @@
 
 #include <map>
 
+#include "gloam/program.h"
 #include "gloam/topics.h"
 #include "ros/cdr.h"
 #include "ros/default_value.h"
@@ -112,12 +113,7 @@ void encode_message(const MessageSchema& schema, size_t part, nb::handle from, C
   for (const auto [key, value] : given) {
     const std::string name = nb::cast<std::string>(key);
     if (std::ranges::find(names, name) != names.end()) continue;
-    raise(
-        "UsageError", "the message has no field '" + name + "'", "its fields: " + [&] {
-          std::string list;
-          for (const std::string& n : names) list += list.empty() ? n : ", " + n;
-          return list;
-        }());
+    raise("UsageError", "the message has no field '" + name + "'", suggest_name(name, names));
   }
   for (const SchemaField& field : fields) {
     const nb::str key(field.name.c_str());
@@ -153,6 +149,12 @@ void bind_messages(nb::module_& m) {
                      return nb::bytes(reinterpret_cast<const char*>(message.data.data()),
                                       message.data.size());
                    })
+      .def("__repr__",
+           [](const Message& message) {
+             return "<gloam.Message of '" + message.topic + "', " + message.type + ", step " +
+                    std::to_string(message.step) + ", " + std::to_string(message.data.size()) +
+                    " bytes>";
+           })
       .def("decode", [](const Message& message) { return decode(message.type, message.data); });
   m.def("decode_message", [](const std::string& type, nb::bytes data) {
     const auto* begin = reinterpret_cast<const uint8_t*>(data.c_str());

@@ -8,7 +8,6 @@
 namespace gloam::python {
 namespace {
 
-constexpr int64_t kShortRun = 64;  // steps that are not worth a thread that looks after signals
 constexpr int kState = mjSTATE_INTEGRATION;
 
 void read_state(const PhysicsMemory& memory, std::vector<double>* state) {
@@ -18,16 +17,23 @@ void read_state(const PhysicsMemory& memory, std::vector<double>* state) {
 
 }  // namespace
 
-Run::Run(std::unique_ptr<Simulation> simulation, nb::object keep)
-    : simulation_(std::move(simulation)), keep_(std::move(keep)), hook_(nb::none()) {
+Run::Run(std::unique_ptr<Simulation> simulation, Shared shared)
+    : simulation_(std::move(simulation)), shared_(std::move(shared)), hook_(nb::none()) {
   check(simulation_->set_step_hook(
       [this](const mjModel_* model, mjData_* data) { call_hook(model, data); }));
 }
 
-Run::~Run() { close(); }
+bool Run::end() {
+  try {
+    close();
+  } catch (nb::python_error& error) {
+    error.discard_as_unraisable("the end of a gloam.Simulation");
+  }
+  return simulation_ == nullptr;
+}
 
 Simulation& Run::simulation() {
-  if (simulation_ == nullptr) raise("ClosedError", "the simulation is closed");
+  if (is_closed_) raise("ClosedError", "the simulation is closed");
   if (getpid() != process_)
     raise("ForkedError", "the simulation belongs to the process that this one was forked from",
           "make it in the new process, or start processes by 'spawn'");
@@ -35,7 +41,7 @@ Simulation& Run::simulation() {
 }
 
 // Calls that move time, or look at the state after it, come one at a time.
-std::unique_lock<std::mutex> Run::turn() {
+std::unique_lock<std::timed_mutex> Run::turn() {
   simulation();
   if (CallbackScope::is_inside())
     raise("UsageError", "a callback or hook cannot wait for its own simulation",
@@ -49,15 +55,41 @@ std::unique_lock<std::mutex> Run::turn() {
   return lock;
 }
 
+// What keeps it from ending: a function of Python's that has not returned; "" = nothing.
+std::string Run::stuck() const {
+  if (is_in_hook_) return "a step hook";
+  for (const auto& inbox : open_inboxes())
+    if (inbox->is_in_callback()) return "the callback of " + inbox->name();
+  return {};
+}
+
+void Run::leave_behind(const std::string& what) {
+  is_closed_ = true;
+  for (const auto& inbox : open_inboxes()) inbox->leave_behind();
+  raise("StuckError",
+        what + " has not returned within " + std::to_string(kPatience.count()) +
+            " s: its thread and the simulation's memory are left behind",
+        "callbacks and hooks have to return; give long work to a thread of your own");
+}
+
 void Run::close() {
-  if (simulation_ == nullptr) return;
+  if (is_closed_) return;
   if (getpid() != process_) {  // its threads are in the other process: nothing can be waited for
+    is_closed_ = true;
     static_cast<void>(simulation_.release());
     return;
   }
-  simulation_->request_stop();  // whoever steps it ends
-  const auto lock = turn();
+  if (CallbackScope::is_inside())
+    raise("UsageError", "a callback or hook cannot wait for its own simulation",
+          "call it from another thread, or use commands");
+  simulation_->request_stop();  // a thread that steps it ends
+  for (const auto& inbox : open_inboxes()) inbox->refuse_callbacks();
+  if (!wait_patiently([this] { return stuck().empty(); })) leave_behind(stuck());
+  std::unique_lock lock(turn_, std::defer_lock);
+  if (!wait_patiently([&] { return lock.try_lock(); })) leave_behind("a call of another thread");
+  if (is_closed_) return;
   for (const auto& inbox : open_inboxes()) inbox->close();
+  is_closed_ = true;
   std::unique_ptr<Simulation> simulation = std::move(simulation_);
   const nb::gil_scoped_release released;
   simulation.reset();
@@ -91,6 +123,7 @@ void Run::restart_inboxes() {
 // Numbers that Python wrote between two steps are put back, and the hook gives them to the next
 // step: logs keep what hooks write as inputs.
 void Run::give_written() {
+  give_written_model();
   if (!is_watched_ || seen_.empty()) return;
   read_state(memory_, &now_);
   written_ = {};
@@ -110,16 +143,40 @@ void Run::give_written() {
   has_written_.store(true, std::memory_order_release);
 }
 
+// What was written into the model: Commands for the next step.
+void Run::give_written_model() {
+  if (!model_is_watched_ || mirror_ == nullptr) return;
+  const auto commands = mirror_->take_written(std::exchange(model_is_given_, false));
+  if (!commands.ok()) raise(commands.error());
+  if (commands->empty()) return;
+  has_commands_ = true;
+  const Status posted = without_gil([&] { return simulation_->post(*commands); });
+  if (posted.ok()) return;
+  mirror_->follow();
+  raise(posted.error());
+}
+
+void Run::watch_model() {
+  memory();
+  if (mirror_ == nullptr) return;
+  if (!model_is_watched_) mirror_->follow(true);
+  model_is_watched_ = model_is_given_ = true;
+}
+
 void Run::look_at_memory() {
   PhysicsMemory now = without_gil([&] { return simulation_->memory(); });
   if (now.data == memory_.data && now.model == memory_.model) return;
   memory_ = std::move(now);
+  mirror_ = shared_.mirrors->of(memory_.model.get());
   ++generation_;
 }
 
 void Run::look_at_state() {
   if (!is_watched_) return;
   read_state(memory_, &seen_);
+  if (!model_is_watched_ || mirror_ == nullptr) return;
+  without_gil([&] { return simulation_->memory(); });  // brings the model's options up to date
+  mirror_->follow(model_is_given_);
 }
 
 // After what may have exchanged the memory.
@@ -142,13 +199,16 @@ void Run::call_hook(const mjModel_* model, mjData_* data) {
   const nb::object hook = hook_;  // kept for as long as it runs
   if (!hook.is_valid() || hook.is_none()) return;
   const CallbackScope inside;
+  is_in_hook_ = true;
   try {
     hook();
+    give_written_model();
   } catch (nb::python_error& error) {
     hook_error_.keep(std::move(error));
     simulation_->pause();
     simulation_->request_stop();
   }
+  is_in_hook_ = false;
 }
 
 // A call that moves time: with what was written before it, and with errors of hooks after it.
@@ -163,7 +223,12 @@ void Run::guarded_call(F&& job) {
   } catch (...) {
     thrown = std::current_exception();  // Ctrl-C
   }
-  thrown || !status.ok() ? look_anew() : look_at_state();
+  if (is_in_hook_) {  // stopped, and the hook has not returned: nobody knows how it is
+    seen_.clear();
+  } else {
+    thrown || !status.ok() ? look_anew() : look_at_state();
+  }
+  shared_.signal->rethrow();
   hook_error_.rethrow();
   for (const auto& inbox : open_inboxes()) inbox->rethrow();
   if (thrown) std::rethrow_exception(thrown);
@@ -178,18 +243,11 @@ Snapshot Run::latest() {
 void Run::step(int64_t n) {
   if (n < 0) raise("UsageError", "a number of steps is not negative");
   if (n == 0) return;
-  if (n > kShortRun || has_hook_ || !inboxes_.empty()) {
-    run_until(latest().step() + n);
-    return;
-  }
   guarded_call([&] { return without_gil([&] { return simulation_->step(n); }); });
 }
 
 void Run::run_until(int64_t step) {
-  guarded_call([&] {
-    return interruptible([&] { return simulation_->run_until(step); },
-                         [&] { simulation_->request_stop(); });
-  });
+  guarded_call([&] { return without_gil([&] { return simulation_->run_until(step); }); });
 }
 
 void Run::resume() {
@@ -203,7 +261,8 @@ void Run::pause() {
   simulation();
   without_gil([&] { simulation_->pause(); });
   const std::unique_lock lock(turn_, std::try_to_lock);
-  if (!lock.owns_lock()) return;  // somebody steps it, and will look himself
+  if (!lock.owns_lock()) return;  // the thread that steps it will look
+  give_written_model();
   look_anew();
 }
 

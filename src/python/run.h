@@ -11,6 +11,7 @@
 #include "core.h"
 #include "gloam/simulation.h"
 #include "inbox.h"
+#include "model_mirror.h"
 
 namespace gloam::python {
 
@@ -22,16 +23,28 @@ struct Written {
 
 class Run {
  public:
-  Run(std::unique_ptr<Simulation> simulation, nb::object keep);
-  ~Run();
+  /// What a simulation is made with, and shares with its Run.
+  struct Shared {
+    nb::object make_data;  ///< or none
+    std::shared_ptr<ModelMirrors> mirrors = std::make_shared<ModelMirrors>();
+    std::shared_ptr<FirstError> signal =
+        std::make_shared<FirstError>();  ///< Ctrl-C while it waited
+  };
+
+  Run(std::unique_ptr<Simulation> simulation, Shared shared);
+  /// Closes it at the end of its Python object, raising nothing. False: it was left behind, and
+  /// must not be deleted.
+  bool end();
 
   /// Raises: closed, or this process was forked from the one that made it.
   Simulation& simulation();
   /// The present instant. The interpreter is free meanwhile: the thread that steps answers, and may
   /// be in a hook of Python's.
   Snapshot latest();
+  /// Ends the simulation and its streams. Raises an Error where a callback or hook does not return
+  /// within kPatience: its thread and the simulation's memory are then left behind.
   void close();
-  bool is_closed() const { return simulation_ == nullptr; }
+  bool is_closed() const { return is_closed_; }
 
   void step(int64_t n);
   void run_until(int64_t step);
@@ -44,6 +57,8 @@ class Run {
 
   /// Memory that physics steps in now; from then on what Python writes into it counts as input.
   const PhysicsMemory& memory();
+  /// From now on what Python writes into the model of the package `mujoco` counts as input, too.
+  void watch_model();
   /// Number of that memory; another one after a recompile, a restore, a failure.
   int64_t generation();
   /// The next message of a stream, at the time at which it reaches a reader.
@@ -56,12 +71,15 @@ class Run {
   nb::object& hook() { return hook_; }
 
  private:
-  std::unique_lock<std::mutex> turn();
+  std::unique_lock<std::timed_mutex> turn();
   void give_written();
+  void give_written_model();
   void look_at_memory();
   void look_at_state();
   void look_anew();
   void call_hook(const mjModel_* model, mjData_* data);
+  std::string stuck() const;
+  void leave_behind(const std::string& what);
   std::vector<std::shared_ptr<Inbox>> open_inboxes() const;
   void empty_inboxes();
   void restart_inboxes();
@@ -69,18 +87,22 @@ class Run {
   void guarded_call(F&& job);
 
   std::unique_ptr<Simulation> simulation_;
-  nb::object keep_;  // made the memory, if it is not the simulation's own
+  const Shared shared_;
   const pid_t process_ = getpid();
-  std::mutex turn_;
+  std::timed_mutex turn_;
+  std::atomic<bool> is_closed_{false};
   PhysicsMemory memory_;
   int64_t generation_ = 0;
-  bool is_watched_ = false;   // Python holds arrays of the memory
+  bool is_watched_ = false;              // Python holds arrays of the memory
+  std::shared_ptr<ModelMirror> mirror_;  // of the memory's model; null without the package
+  bool model_is_watched_ = false;        // Python holds the model
+  bool model_is_given_ = false;          // it got it since the last step
   std::vector<double> seen_;  // state when Python last got it; empty = it runs, or was never asked
   std::vector<double> now_, in_hook_;
   Written written_;
   std::atomic<bool> has_written_{false}, has_commands_{false};
   nb::object hook_;
-  std::atomic<bool> has_hook_{false};
+  std::atomic<bool> has_hook_{false}, is_in_hook_{false};
   FirstError hook_error_;
   std::vector<std::weak_ptr<Inbox>> inboxes_;
 };

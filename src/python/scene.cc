@@ -64,6 +64,15 @@ void bind_scene(nb::module_& m) {
              return take(overlay_scene(scene, file));
            })
       .def("to_toml", [](const Scene& scene) { return to_toml(scene); })
+      .def_prop_ro("access",
+                   [](const Scene& scene) {
+                     return nb::make_tuple(scene.access.root.string(), scene.access.strict);
+                   })
+      .def("set_origin",
+           [](Scene& scene, const std::string& name, const std::filesystem::path& file) {
+             scene.name = name;
+             scene.file = file;
+           })
       .def_prop_ro("name", [](const Scene& scene) { return scene.name; })
       .def_prop_ro("file", [](const Scene& scene) { return scene.file; })
       .def_prop_ro("bare_model", [](const Scene& scene) { return scene.bare_model; })

@@ -19,11 +19,29 @@ std::shared_ptr<Run> create(const World& world, uint64_t seed, double timestep,
   options.seed = seed;
   options.timestep = timestep;
   options.speed = speed;
-  options.pace = take(pace_named(pace));
-  if (!make_data.is_none()) options.make_data = data_maker(make_data);
+  if (pace == "lockstep") {
+    options.pace = Pace::kLockstep;
+  } else if (pace == "fast") {
+    options.pace = Pace::kFast;
+  } else if (pace == "realtime") {
+    options.pace = Pace::kRealTime;
+  } else {
+    raise("UsageError", "there is no pace '" + pace + "'", "one of: lockstep, fast, realtime");
+  }
+  Run::Shared shared{std::move(make_data)};
+  if (!shared.make_data.is_none()) options.make_data = data_maker(shared.make_data, shared.mirrors);
+  options.keep_waiting = [signal = shared.signal] {
+    const nb::gil_scoped_acquire acquired;
+    if (PyErr_CheckSignals() == 0) return true;
+    signal->keep(nb::python_error());
+    return false;
+  };
   auto made = without_gil([&] { return Simulation::create(world, options); });
-  return {new Run(take(std::move(made)), std::move(make_data)),
-          [](Run* run) { destroy_when_safe(Kept::kRun, [run] { delete run; }); }};
+  return {new Run(take(std::move(made)), std::move(shared)), [](Run* run) {
+            destroy_when_safe(Kept::kRun, [run] {
+              if (run->end()) delete run;
+            });
+          }};
 }
 
 // Posts for the holder of a lease, else for everybody.
@@ -100,9 +118,7 @@ void bind_commands(nb::class_<Run>& c) {
   c.def(
       "set_live_field",
       [](Run& run, const std::string& field, int first, nb::handle values, int64_t step) {
-        const std::vector<double> numbers = doubles(values);
-        post(run, SetLiveField{live_field(field), first, {numbers.begin(), numbers.end()}}, step,
-             nullptr);
+        post(run, SetLiveField{live_field(field), first, doubles(values)}, step, nullptr);
       },
       nb::arg("field"), nb::arg("first"), nb::arg("values"), nb::arg("step") = kNext);
 }
@@ -243,6 +259,7 @@ void bind_simulation(nb::module_& m) {
       .def("restore", &Run::restore, nb::arg("checkpoint"))
       .def("checkpoint",
            [](Run& r) { return take(without_gil([&] { return r.simulation().checkpoint(); })); })
+      .def("watch_model", &Run::watch_model)
       .def("set_hook", &Run::set_hook, nb::arg("hook").none())
       .def("set_pace",
            [](Run& r, const std::string& pace, double speed) {

@@ -11,11 +11,19 @@ namespace gloam::python {
 namespace {
 
 // Where several threads may add messages and one Python object looks: see Inbox.
-std::shared_ptr<Inbox> make_inbox(Run& run, nb::object callback) {
+std::shared_ptr<Inbox> make_inbox(Run& run, std::string name, nb::object callback) {
   constexpr int kWaiting = 64;  // messages
   run.simulation();
-  return {new Inbox(kWaiting, std::move(callback)),
-          [](Inbox* inbox) { destroy_when_safe(Kept::kStream, [inbox] { delete inbox; }); }};
+  const auto destroy = [](Inbox* inbox) {
+    destroy_when_safe(Kept::kStream, [inbox] {
+      try {
+        if (inbox->try_close()) delete inbox;
+      } catch (nb::python_error& error) {
+        error.discard_as_unraisable("the end of a stream");
+      }
+    });
+  };
+  return {new Inbox(std::move(name), kWaiting, std::move(callback)), destroy};
 }
 
 template <class S>
@@ -28,7 +36,7 @@ std::shared_ptr<Inbox> open(Run& run, std::shared_ptr<Inbox> inbox,
 
 std::shared_ptr<Inbox> open_camera(Run& run, const nb::dict& options, nb::object callback) {
   const CameraRequest request = camera_request(options);
-  auto inbox = make_inbox(run, std::move(callback));
+  auto inbox = make_inbox(run, "camera '" + request.camera + "'", std::move(callback));
   const auto take_frame = [raw = inbox.get()](std::shared_ptr<const CameraFrame> frame) {
     const int64_t next = frame->step + 1;
     const double delivery = frame->delivery;
@@ -40,7 +48,7 @@ std::shared_ptr<Inbox> open_camera(Run& run, const nb::dict& options, nb::object
 
 std::shared_ptr<Inbox> open_lidar(Run& run, const std::string& name, bool required,
                                   nb::object callback) {
-  auto inbox = make_inbox(run, std::move(callback));
+  auto inbox = make_inbox(run, "lidar '" + name + "'", std::move(callback));
   const auto take_scan = [raw = inbox.get()](std::shared_ptr<const LidarScan> scan) {
     const int64_t next = scan->step;
     raw->put({next, scan->end, [scan = std::move(scan)] { return nb::cast(Scan{scan}); }});
@@ -54,7 +62,7 @@ std::shared_ptr<Inbox> open_lidar(Run& run, const std::string& name, bool requir
 
 std::shared_ptr<Inbox> open_sensor(Run& run, const std::string& name, bool required,
                                    nb::object callback) {
-  auto inbox = make_inbox(run, std::move(callback));
+  auto inbox = make_inbox(run, "sensor '" + name + "'", std::move(callback));
   const auto take_sample = [raw = inbox.get()](const SensorMessage& sample) {
     raw->put({sample.step + 1, sample.delivery, [sample] { return nb::cast(sample); }});
   };
@@ -66,8 +74,9 @@ std::shared_ptr<Inbox> open_sensor(Run& run, const std::string& name, bool requi
 }
 
 std::shared_ptr<Inbox> open_topics(Run& run, const std::vector<std::string>& topics, bool required,
-                                   nb::object callback) {
-  auto inbox = make_inbox(run, std::move(callback));
+                                   nb::object callback, bool every_sample) {
+  auto inbox = make_inbox(run, "topic '" + (topics.empty() ? std::string() : topics[0]) + "'",
+                          std::move(callback));
   const auto take_message = [raw = inbox.get()](const TopicMessage& message) {
     auto kept = std::make_shared<Message>(Message{message.topic.name,
                                                   message.topic.type,
@@ -80,6 +89,7 @@ std::shared_ptr<Inbox> open_topics(Run& run, const std::vector<std::string>& top
   TopicRequest request;
   request.topics = topics;
   request.required = required;
+  request.every_sample = every_sample;
   auto stream = without_gil([&] { return run.simulation().open_topics(request, take_message); });
   return open(run, std::move(inbox), std::move(stream));
 }
@@ -163,7 +173,7 @@ void bind_streams(nb::module_& m) {
   m.def("open_sensor", &open_sensor, nb::arg("run"), nb::arg("name"), nb::arg("required") = true,
         nb::arg("callback").none() = nb::none());
   m.def("open_topics", &open_topics, nb::arg("run"), nb::arg("topics"), nb::arg("required") = true,
-        nb::arg("callback").none() = nb::none());
+        nb::arg("callback").none() = nb::none(), nb::arg("every_sample") = false);
 }
 
 }  // namespace gloam::python

@@ -1,6 +1,9 @@
 // Questions about files: meshes, models, trajectories, reports of runs.
 
+#include <numbers>
+
 #include "core.h"
+#include "gloam/log_export.h"
 #include "gloam/model_tools.h"
 #include "gloam/report.h"
 #include "gloam/trajectory.h"
@@ -80,23 +83,74 @@ nb::dict statistics_dict(const PoseErrors& errors) {
   made["min"] = s.min;
   made["max"] = s.max;
   made["sse"] = s.sse;
+  made["count"] = errors.values.size();
   made["values"] = new_array<double>(std::vector<double>(errors.values), {errors.values.size()});
   return made;
 }
 
-nb::dict evaluate(const Trajectory& reference, const Trajectory& estimate,
-                  const std::string& alignment, double max_difference, double delta) {
-  AssociationOptions options;
-  options.max_difference = max_difference;
-  TrajectoryPair pair = take(associate(reference, estimate, options));
-  take(align(alignment_of(alignment), &pair));
-  RelativeOptions relative;
-  relative.delta = delta;
+DeltaUnit unit_of(const std::string& name) {
+  if (name == "m") return DeltaUnit::kMeters;
+  if (name == "f") return DeltaUnit::kFrames;
+  if (name == "s") return DeltaUnit::kSeconds;
+  if (name == "deg" || name == "rad") return DeltaUnit::kRadians;
+  raise("UsageError", "there is no rpe_unit '" + name + "'", "one of: m, f, s, deg, rad");
+}
+
+// As the JSON of `gloam evaluate` has them.
+Result<nb::dict> parts_dict(const std::function<Result<PoseErrors>(ErrorPart)>& errors) {
+  constexpr std::pair<const char*, ErrorPart> kParts[] = {
+      {"translation_m", ErrorPart::kTranslation},
+      {"angle_rad", ErrorPart::kAngle},
+      {"full", ErrorPart::kFull}};
   nb::dict made;
-  made["ate"] = statistics_dict(take(absolute_errors(pair, ErrorPart::kTranslation)));
-  made["ate_angle"] = statistics_dict(take(absolute_errors(pair, ErrorPart::kAngle)));
-  made["rpe"] = statistics_dict(take(relative_errors(pair, ErrorPart::kTranslation, relative)));
-  made["rpe_angle"] = statistics_dict(take(relative_errors(pair, ErrorPart::kAngle, relative)));
+  for (const auto& [name, part] : kParts) {
+    GLOAM_TRY(const PoseErrors found, errors(part));
+    made[name] = statistics_dict(found);
+  }
+  return made;
+}
+
+nb::dict evaluate(const Trajectory& estimate, const Trajectory& reference,
+                  const nb::dict& options) {
+  Keywords keywords(options);
+  std::string alignment = "se3", unit = "m";
+  AssociationOptions association;
+  RelativeOptions relative;
+  std::optional<double> delta;
+  keywords.read("align", &alignment);
+  keywords.read("max_difference", &association.max_difference);
+  keywords.read("offset", &association.offset);
+  keywords.read("rpe_unit", &unit);
+  keywords.read("rpe_delta", &delta);
+  keywords.read("all_pairs", &relative.all_pairs);
+  keywords.read("rpe_tolerance", &relative.tolerance);
+  keywords.refuse_others();
+  relative.unit = unit_of(unit);
+  relative.delta = delta.value_or(1);
+  if (unit == "deg") relative.delta *= std::numbers::pi / 180;
+  TrajectoryPair pair = take(associate(reference, estimate, association));
+  const Similarity X = take(align(alignment_of(alignment), &pair));
+  nb::dict made, by;
+  by["by"] = alignment;
+  by["rotation_rows"] = std::vector<double>(X.R_AB.begin(), X.R_AB.end());
+  by["translation_m"] = std::vector<double>{X.p_AB.x, X.p_AB.y, X.p_AB.z};
+  by["scale"] = X.scale;
+  made["align"] = by;
+  made["reference_poses"] = reference.size();
+  made["estimate_poses"] = estimate.size();
+  made["pairs"] = pair.reference.size();
+  made["reference_length_m"] = pair.reference.path_length();
+  made["estimate_length_m"] = pair.estimate.path_length();
+  made["ate"] = take(parts_dict([&](ErrorPart part) { return absolute_errors(pair, part); }));
+  auto rpe = parts_dict([&](ErrorPart part) { return relative_errors(pair, part, relative); });
+  // A delta that was asked for must be there; the usual one may be longer than the way.
+  if (!rpe.ok() && delta) raise(rpe.error());
+  made["rpe"] = nb::none();
+  if (!rpe.ok()) return made;
+  (*rpe)["delta"] = delta.value_or(1);
+  (*rpe)["delta_unit"] = unit;
+  (*rpe)["all_pairs"] = relative.all_pairs;
+  made["rpe"] = *rpe;
   return made;
 }
 
@@ -113,8 +167,9 @@ void bind_tools(nb::module_& m) {
       .def_prop_ro("path_length", &Trajectory::path_length)
       .def_prop_ro("notes", [](const Trajectory& t) { return t.notes; })
       .def("__len__", &Trajectory::size);
-  m.def("evaluate", &evaluate, nb::arg("reference"), nb::arg("estimate"),
-        nb::arg("alignment") = "none", nb::arg("max_difference") = 0.01, nb::arg("delta") = 1.0);
+  m.def("evaluate", &evaluate, nb::arg("estimate"), nb::arg("reference"), nb::arg("options"));
+  m.def("trajectory_topics",
+        [](const std::filesystem::path& log) { return take(trajectory_topics(log)); });
   m.def("convert_object", &convert, nb::arg("mesh"), nb::arg("progress").none() = nb::none(),
         nb::arg("root") = std::filesystem::path(), nb::arg("strict") = false);
   m.def("check_model", &check_file, nb::arg("file"), nb::arg("folder"),

@@ -168,6 +168,12 @@ void bind_world(nb::module_& m) {
       .def("robots", &robot_list)
       .def("streams", &stream_list)
       .def("inputs", &input_list)
+      .def("live_field",
+           [](const World& world, const std::string& name) {
+             std::vector<double> numbers = take(world.live_field(name));
+             const size_t n = numbers.size();
+             return new_array<double>(std::move(numbers), {n});
+           })
       .def("metrics", &metric_list)
       .def("topics", [](const World& world) { return topic_list(take(list_topics(world))); })
       .def("notes", [](const World& w) { return texts(without_gil([&] { return w.notes(); })); })

@@ -19,6 +19,7 @@ namespace gloam {
 namespace {
 
 constexpr std::chrono::milliseconds kLook{5};  // after which a wish to stop is seen
+constexpr int kLooks = 10;                     // after which keep_waiting is called
 
 double wall_seconds() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
@@ -48,8 +49,7 @@ Result<std::unique_ptr<Simulation>> Simulation::create(const World& world,
 Result<std::unique_ptr<LiveSimulation>> LiveSimulation::create(const World& world,
                                                                const SimulationOptions& options,
                                                                LiveOptions how) {
-  std::unique_ptr<LiveSimulation> live(
-      new LiveSimulation(options.seed, options.pace != Pace::kRealTime, how.metering));
+  std::unique_ptr<LiveSimulation> live(new LiveSimulation(options, how.metering));
   SimulatorOptions core;
   core.seed = options.seed;
   if (options.timestep != 0) core.timestep = options.timestep;
@@ -81,10 +81,19 @@ Status LiveSimulation::recompile(const World& world) {
   GLOAM_TRY(auto controllers, make_controllers(world.compiled()));
   if (renderers_.any()) GLOAM_TRY_STATUS(renderers_.of(world.compiled()));
   const Status status = simulator_->recompile(world.compiled(), std::move(controllers));
-  renderers_.keep_only(simulator_->world());
+  forget_other_worlds();
   GLOAM_TRY_STATUS(status);
   send_latched();
   return metering_ == Metering::kAlways ? meters_.open(stream_context()) : Status();
+}
+
+// Of a World that runs no longer nothing is kept: it may have 100 MB.
+void LiveSimulation::forget_other_worlds() {
+  const std::shared_ptr<const CompiledWorld> world = simulator_->world();
+  renderers_.keep_only(world);
+  topics_.keep_only(world);
+  const std::lock_guard lock(solver_mutex_);
+  if (solver_ != nullptr && solver_->world() != world) solver_.reset();
 }
 
 Result<Checkpoint> LiveSimulation::checkpoint() {
@@ -98,7 +107,7 @@ Status LiveSimulation::restore(const Checkpoint& checkpoint) {
   const bool is_other = world != simulator_->world();
   if (renderers_.any()) GLOAM_TRY_STATUS(renderers_.of(world));
   const Status status = simulator_->restore(checkpoint.data(), make_controllers);
-  renderers_.keep_only(simulator_->world());
+  forget_other_worlds();
   GLOAM_TRY_STATUS(status);
   restart_speed_clock();
   if (is_other) send_latched();
@@ -140,22 +149,30 @@ void LiveSimulation::restart_speed_clock() {
   clock_steps_ = simulator_->counters().steps;
 }
 
+bool LiveSimulation::has_to_stop(int look) {
+  if (look % kLooks == 0 && keep_waiting_ && !keep_waiting_()) stop_requested_ = true;
+  return stop_requested_;
+}
+
+Status LiveSimulation::stopped_by_the_user() {
+  paused_ = true;
+  simulator_->halt();  // not pause(): a step hook may never return
+  return Error{ErrorKind::kInterrupted, "stopped by the user"};
+}
+
 Status LiveSimulation::run_until(int64_t step) {
   if (simulator_->is_on_sim_thread()) return simulator_->wait();  // says that it cannot
   restart_speed_clock();
   paused_ = false;
   step = std::min(step, simulator_->end());
   simulator_->run_until(step);
-  while (!stop_requested_) {
+  for (int look = 1; !has_to_stop(look); ++look) {
     if (!simulator_->wait_for(kLook)) continue;
     // Somebody may have paused it on the way.
     if (simulator_->step_count() >= step || !simulator_->status().ok()) break;
     std::this_thread::sleep_for(kLook);
   }
-  if (stop_requested_.exchange(false)) {
-    pause();
-    return Error{ErrorKind::kInterrupted, "stopped by the user"};
-  }
+  if (stop_requested_.exchange(false)) return stopped_by_the_user();
   const Status status = simulator_->wait();
   pause();  // so that a reset does not set out for `step` again
   return status;
@@ -173,8 +190,12 @@ void LiveSimulation::pause() {
 }
 
 Status LiveSimulation::step(int64_t n) {
-  pause();
-  return simulator_->step(n);
+  paused_ = true;
+  const std::optional<Status> taken = simulator_->begin_steps(n);
+  for (int look = 1; !taken && !simulator_->wait_for(kLook); ++look)
+    if (has_to_stop(look)) break;
+  if (stop_requested_.exchange(false)) return stopped_by_the_user();
+  return taken ? *taken : simulator_->wait();
 }
 
 void LiveSimulation::set_pace(Pace pace, double speed) {

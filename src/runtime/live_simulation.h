@@ -2,6 +2,7 @@
 // gloam::Simulation over the simulation core, the shared renderer and the cameras.
 
 #include <atomic>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -119,9 +120,15 @@ class LiveSimulation final : public Simulation {
                                                      ScanCallback on_scan);
 
  private:
-  LiveSimulation(uint64_t seed, bool required_meters, Metering metering)
-      : seed_(seed), metering_(metering), meters_(required_meters) {}
+  LiveSimulation(const SimulationOptions& options, Metering metering)
+      : seed_(options.seed),
+        metering_(metering),
+        keep_waiting_(options.keep_waiting),
+        meters_(options.seed, options.pace != Pace::kRealTime) {}
   void restart_speed_clock();
+  bool has_to_stop(int look);
+  Status stopped_by_the_user();
+  void forget_other_worlds();
   bool repeats_a_reset();
   void send_latched();
   using Solve = Status (PoseSolver::*)(const Snapshot&, PoseFrame&);
@@ -129,6 +136,7 @@ class LiveSimulation final : public Simulation {
 
   const uint64_t seed_;
   const Metering metering_;
+  const std::function<bool()> keep_waiting_;
   std::unique_ptr<Simulator> simulator_;
   SharedRenderers renderers_;
   SensorCosts costs_;

@@ -8,7 +8,7 @@
 namespace gloam {
 namespace {
 
-constexpr Rational kMetricRate = {10, 1};  // [Hz]
+constexpr Rational kMetricRate = {10, 1};  // of messages [Hz]
 
 /// Metrics of one subscription, without those of light and visibility, which take a renderer.
 InstantEncoder encode_metrics(const TopicSource& world) {
@@ -46,6 +46,7 @@ void add_metric_topics(const TopicSource& world, TopicTable* table) {
                 .rate = kMetricRate,
                 .is_logged = is_asked_for,
                 .source = "metrics"};
+  topic.sampled = world->scene.record.metrics_rate;  // as in a recorded run
   topic.code = InstantEncoderMaker([world] { return encode_metrics(world); });
   table->push_back(std::move(topic));
 }

@@ -9,7 +9,8 @@ from typing import Any
 
 import numpy as np
 
-from gloam.envs.noise import Noise, parse_noise
+from gloam.dynamics import QUANTITIES
+from gloam.envs.noise import Array, Noise, parse_noise
 from gloam.envs.terms import Term
 
 Range = float | tuple[float, float]
@@ -28,6 +29,8 @@ class EnvSettings:
     history: by the name of a term: how many of its newest values are given.
     randomize: by the path of an option of the scene: (low, high), numbers or lists of numbers, drawn evenly for each
         episode. The scene is compiled again at each reset, which takes its time.
+    dynamics: factors (low, high) of what the model's files say, by "mass", "friction", "gains", "armature" or "damping", drawn evenly for each
+        episode and each body, geom, actuator or joint of the model. Inputs of the episode's first step, without a recompile.
     threads: that step worlds; None = one for each core.
     render_camera: name of the camera of render(); None = the scene's first. render_size: (width, height) [px].
     """
@@ -37,6 +40,7 @@ class EnvSettings:
     noise: Mapping[str, Any] = field(default_factory=dict)
     history: Mapping[str, int] = field(default_factory=dict)
     randomize: Mapping[str, Limits] = field(default_factory=dict)
+    dynamics: Mapping[str, tuple[float, float]] = field(default_factory=dict)
     threads: int | None = None
     render_camera: str | None = None
     render_size: tuple[int, int] = (320, 240)
@@ -53,6 +57,11 @@ class EnvSettings:
                 np.isfinite(low).all() and np.isfinite(high).all() and (low <= high).all()
             ):
                 raise ValueError(f"randomize '{name}': {limits!r} is no range (low, high)")
+        for name, limits in self.dynamics.items():
+            if name not in QUANTITIES:
+                raise ValueError(f"dynamics names '{name}', the quantities are {', '.join(QUANTITIES)}")
+            if len(limits) != 2 or not (0 < limits[0] <= limits[1] < math.inf):
+                raise ValueError(f"dynamics '{name}': {limits!r} is no range (low, high) of positive factors")
         if self.threads is not None and self.threads < 1:
             raise ValueError(f"threads is {self.threads}, at least 1 steps the worlds")
 
@@ -83,6 +92,10 @@ class EnvSettings:
             noise=noise,
             history=self.history.get(term.name, term.history),
         )
+
+    def draw_dynamics(self, rng: np.random.Generator, counts: Mapping[str, int]) -> dict[str, Array]:
+        """Factors of the quantities that are randomised, one for each of `counts` elements."""
+        return {name: rng.uniform(low, high, counts[name]) for name, (low, high) in self.dynamics.items()}
 
     def draw(self, rng: np.random.Generator) -> dict[str, Any]:
         """Values of the options that are randomised."""

@@ -6,6 +6,7 @@ from typing import Any, SupportsFloat
 
 import gymnasium as gym
 import numpy as np
+from gymnasium.envs.registration import EnvSpec
 
 import gloam
 from gloam.envs.checks import checked_actions
@@ -90,10 +91,26 @@ class Env(gym.Env[Observation, Array]):
         assert self.sim is not None
         return self._worlds.render(0) if self.render_mode == "rgb_array" else None
 
+    def __reduce__(self) -> Any:
+        """Pickled or copied, an environment is made again by its spec: it begins anew and has to be reset."""
+        if self.spec is None:
+            raise TypeError("an environment without a spec cannot be pickled or copied: register it and make it with gym.make(), whose env.spec makes "
+                            "another one, or send the function that makes it")
+        return made_by_spec, (self.spec,)
+
+    def __deepcopy__(self, _: dict[int, Any]) -> Any:
+        make, arguments = self.__reduce__()
+        return make(*arguments)
+
     def close(self) -> None:
         """Ends the simulation."""
         if hasattr(self, "_worlds"):
             self._worlds.close()
+
+
+def made_by_spec(spec: EnvSpec) -> gym.Env[Any, Any]:
+    """What gym.make(spec) makes, without its wrappers, which are pickled by themselves."""
+    return gym.make(spec).unwrapped
 
 
 def _only(observation: Observation) -> Observation:

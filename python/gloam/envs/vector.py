@@ -58,6 +58,9 @@ class VectorEnv(gym.vector.VectorEnv[Observation, Array, Array]):
         self.action_space = batch_space(self.single_action_space, num_envs)
         self._last: Any = create_empty_array(self.single_observation_space, num_envs)
 
+    def __reduce__(self) -> Any:
+        raise TypeError("a vector environment cannot be pickled or copied: make another with gym.make_vec(env.spec), or send the function that makes it")
+
     @property
     def sims(self) -> list[gloam.Simulation]:
         """The simulations, by world. A reset with another seed makes another one. Errors: ClosedError."""

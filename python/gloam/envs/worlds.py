@@ -14,6 +14,7 @@ import numpy as np
 from gymnasium.utils import seeding
 
 import gloam
+from gloam.dynamics import Dynamics
 from gloam.envs.actuation import DelayedActions
 from gloam.envs.noise import Array
 from gloam.envs.pipeline import Observation, Pipeline
@@ -139,6 +140,9 @@ class Worlds:
             drawn = self.settings.draw(slot.rng)
             slot.sim.set(drawn, progress=False)
         slot.sim.reset()
+        if self.settings.dynamics:
+            dynamics = Dynamics(slot.sim)
+            dynamics.scale(**self.settings.draw_dynamics(slot.rng, dynamics.counts))
         slot.actions.reset(slot.rng)
         slot.bound.begin(slot.rng, options)
         if self._neutral is not None:

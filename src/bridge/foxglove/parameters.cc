@@ -66,8 +66,8 @@ void Parameters::add_live_fields() {
       if (!value.is_array() || value.size() != size) return bad_value(what);
       SetLiveField command{.field = id};
       for (const json& number : value) {
-        if (!number.is_number() || !std::isfinite(number.get<float>())) return bad_value(what);
-        command.values.push_back(number.get<float>());
+        if (!number.is_number() || !std::isfinite(number.get<double>())) return bad_value(what);
+        command.values.push_back(number.get<double>());
       }
       return simulation.post(Command{.what = std::move(command)});
     };

@@ -127,7 +127,7 @@ class Operator {
   /// Elements of a live field at the latest instant; names are those of World::inputs(), "gravity".
   Result<std::vector<double>> live_field(std::string_view name) const;
   /// Changes elements from `first` on, at the next step.
-  Status set_live_field(std::string_view name, int first, std::vector<float> values);
+  Status set_live_field(std::string_view name, int first, std::vector<double> values);
   /// Goes on in the scene of a text in TOML, whose paths start at the first scene's folder.
   Status recompile(std::string_view toml);
 

@@ -67,7 +67,7 @@ Result<std::vector<double>> Operator::live_field(std::string_view name) const {
   return private_->solved->instant.value(live_field_array(id));
 }
 
-Status Operator::set_live_field(std::string_view name, int first, std::vector<float> values) {
+Status Operator::set_live_field(std::string_view name, int first, std::vector<double> values) {
   GLOAM_TRY(const LiveFieldId id, find_live_field(name));
   return simulation_.post({.what = SetLiveField{id, first, std::move(values)}});
 }

@@ -338,7 +338,7 @@ TEST_F(OperatorTest, ChangesLiveFields) {
   for (const InputInfo& input : simulation_->world().inputs())
     if (input.kind == InputKind::kLiveField)
       expect_ok(op().set_live_field(input.name, 0,
-                                    std::vector<float>(static_cast<size_t>(input.count), 0.5f)));
+                                    std::vector<double>(static_cast<size_t>(input.count), 0.5)));
   expect_ok(op().set_live_field("gravity", 0, {0, 0, 0}));
   expect_ok(op().step(100));
   EXPECT_NEAR(op().entity_state("crate").value().velocity.z, 0, 1e-2);

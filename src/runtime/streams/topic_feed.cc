@@ -37,7 +37,11 @@ Status TopicFeed::open_all(LiveSimulation& simulation) {
   for (const Topic* topic : wanted) {
     Outlet outlet{topic};
     if (topic->info.rate.num > 0)
-      outlet.schedule = StepSchedule::at_most(topic->info.rate, timestep);
+      outlet.schedule = outlet.messages = StepSchedule::at_most(topic->info.rate, timestep);
+    if (topic->sampled.num > 0) {
+      outlet.schedule = StepSchedule::at_most(topic->sampled, timestep);
+      if (request_.every_sample) outlet.messages = outlet.schedule;
+    }
     if (const auto* encode = std::get_if<FrameEncoder>(&topic->code)) outlet.encode_frame = *encode;
     if (const auto* make = std::get_if<FrameEncoderMaker>(&topic->code))
       outlet.encode_frame = (*make)();
@@ -209,10 +213,19 @@ Status TopicFeed::take_instant(InstantReader* reader, const Snapshot& now) {
   for (Outlet& outlet : reader->outlets) {
     if (!is_due(outlet)) continue;
     const TopicInfo& info = outlet.topic->info;
-    send(&outlet, outlet.encode_instant(info, instant, &outlet.bytes),
-         {info, now.data().run, now.step(), now.time(), now.time(), {}});
+    const Status encoded = outlet.encode_instant(info, instant, &outlet.bytes);
+    if (!encoded.ok() || is_message(&outlet, now.step()))
+      send(&outlet, encoded, {info, now.data().run, now.step(), now.time(), now.time(), {}});
   }
   return {};
+}
+
+// Whether a message was due since the sample before.
+bool TopicFeed::is_message(Outlet* outlet, int64_t step) {
+  const int64_t before = outlet->sampled < step ? outlet->sampled : -1;
+  outlet->sampled = step;
+  const StepSchedule& messages = outlet->messages;
+  return messages.step_of(messages.first_at_or_after(before + 1)) <= step;
 }
 
 int64_t TopicFeed::dropped() const {

@@ -37,6 +37,8 @@ class TopicFeed final : public TopicStream {
   struct Outlet {
     const Topic* topic;
     StepSchedule schedule = {};
+    StepSchedule messages = {};          // of a topic that is sampled more often than it is sent
+    int64_t sampled = -1;                // step
     FrameEncoder encode_frame = {};      // of a camera's topic
     InstantEncoder encode_instant = {};  // of a topic of instants
     MessageBytes bytes = {};
@@ -76,6 +78,7 @@ class TopicFeed final : public TopicStream {
   Status open_latched(LiveSimulation& simulation, Outlets outlets);
   Status send_latched(LiveSimulation& simulation, const Snapshot& now);
   void take_sample(Gathering* gathering, size_t part, const SensorMessage& message);
+  static bool is_message(Outlet* outlet, int64_t step);
   Status take_instant(InstantReader* reader, const Snapshot& now);
   Status follow(const std::shared_ptr<const CompiledWorld>& world, InstantReader* reader);
   static void keep_topics(const TopicTable& table, Outlets* outlets);

@@ -21,6 +21,14 @@ class TopicTables {
     return table_;
   }
 
+  /// Forgets the table of another World; its readers keep it.
+  void keep_only(const std::shared_ptr<const CompiledWorld>& world) {
+    const std::lock_guard lock(mutex_);
+    if (world_ == world) return;
+    world_.reset();
+    table_.reset();
+  }
+
  private:
   std::mutex mutex_;
   std::shared_ptr<const CompiledWorld> world_;

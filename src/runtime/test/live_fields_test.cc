@@ -97,7 +97,7 @@ struct Case {
   const char* name;
   LiveFieldId field;
   const char* first_of;  // geom, material or light whose first value is changed
-  std::vector<float> values;
+  std::vector<double> values;
   Look before, after;
 };
 
@@ -258,7 +258,7 @@ TEST(LiveLookOverTime, AResetGivesTheModelsOwnLookBack) {
   // The picture at kStepsPerFrame of a run with these changes, which a reset ends.
   const auto picture = [&](std::optional<std::pair<float, float>> red_and_height) {
     if (red_and_height) {
-      std::vector<float> ground(12, red_and_height->second);
+      std::vector<double> ground(12, red_and_height->second);
       ground[5] = 1;
       const SetLiveField red{LiveFieldId::kMaterialColor, 0, {red_and_height->first}};
       EXPECT_TRUE((*simulation)->post({0, red}).ok());

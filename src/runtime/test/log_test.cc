@@ -51,7 +51,7 @@ class Logs : public testing::Test {
     ASSERT_TRUE(simulation.post({.what = SetWrench{box, {0.1, 1.0 / 3, 2}, {0, 0, 0.05}}}).ok());
     ASSERT_TRUE(simulation.post({.what = AddVelocity{box, {0.2, 0, 0.1}}}).ok());
     ASSERT_TRUE(simulation.post({.what = DragBody{box, {0, 0, .1}, {.3, 0, 1}}}).ok());
-    ASSERT_TRUE(simulation.post({.what = SetLiveField{LiveFieldId::kGravity, 2, {-3.7f}}}).ok());
+    ASSERT_TRUE(simulation.post({.what = SetLiveField{LiveFieldId::kGravity, 2, {-3.7}}}).ok());
     ASSERT_TRUE(simulation
                     .post({.what = SetMocapPose{*world.find_body("swing/hand"),
                                                 {{0, 0, .1}, {1, 0, 0, 0}}}})
@@ -257,7 +257,7 @@ TEST_F(Logs, CommandsAreReadBackToTheBit) {
       AddVelocity{{1, serial}, {1, 2, 3}},
       DragBody{{1, serial}, {1, 2, 3}, {4, 5, 6}, false},
       ResetSim{},
-      SetLiveField{LiveFieldId::kBodyMass, 1, {0.1f, 3.3f}},
+      SetLiveField{LiveFieldId::kBodyMass, 1, {0.1, 3.3}},
       SetJointState{{1, serial}, {0.7}, {}},
       SetControls{{0, serial}, {0.25}},
       SetJointGoal{{1, serial}, 0.3}};

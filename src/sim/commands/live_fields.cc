@@ -16,12 +16,12 @@ namespace {
 
 struct FieldRow {
   const char* name;
-  const char* array;        // in MuJoCo
-  float smallest, largest;  // allowed values
+  const char* array;         // in MuJoCo
+  double smallest, largest;  // allowed values
   const char* unit;
 };
 
-constexpr float kAny = 1e10f;  // mjMAXVAL: beyond it MuJoCo calls a number bad
+constexpr double kAny = 1e10f;  // mjMAXVAL: beyond it MuJoCo calls a number bad
 
 // By LiveFieldId.
 constexpr FieldRow kFields[kLiveFieldCount] = {
@@ -41,6 +41,12 @@ constexpr FieldRow kFields[kLiveFieldCount] = {
     {"material_reflectance", "mat_reflectance", 0, 1, "1"},
     {"material_metallic", "mat_metallic", -1, 1, "1"},
     {"material_roughness", "mat_roughness", -1, 1, "1"},
+    {"actuator_gain", "actuator_gainprm", -kAny, kAny, "the actuator's own"},
+    {"actuator_bias", "actuator_biasprm", -kAny, kAny, "the actuator's own"},
+    {"dof_armature", "dof_armature", 0, kAny, "kg, kg m^2"},
+    {"dof_damping", "dof_damping", 0, kAny, "N s/m, N m s/rad"},
+    {"dof_frictionloss", "dof_frictionloss", 0, kAny, "N, N m"},
+    {"joint_stiffness", "jnt_stiffness", 0, kAny, "N/m, N m/rad"},
 };
 
 const FieldRow& row(LiveFieldId field) { return kFields[static_cast<int>(field)]; }
@@ -81,22 +87,25 @@ auto visit_field(Model& m, LiveFieldId field, Use&& use) {
       return use(m.mat_metallic, m.nmat);
     case LiveFieldId::kMaterialRoughness:
       return use(m.mat_roughness, m.nmat);
+    case LiveFieldId::kActuatorGain:
+      return use(m.actuator_gainprm, mjNGAIN * m.nactuator);
+    case LiveFieldId::kActuatorBias:
+      return use(m.actuator_biasprm, mjNBIAS * m.nactuator);
+    case LiveFieldId::kDofArmature:
+      return use(m.dof_armature, m.nv);
+    case LiveFieldId::kDofDamping:
+      return use(m.dof_damping, m.nv);
+    case LiveFieldId::kDofFrictionLoss:
+      return use(m.dof_frictionloss, m.nv);
+    case LiveFieldId::kJointStiffness:
+      return use(m.jnt_stiffness, m.njnt);
   }
   return use(static_cast<float*>(nullptr), 0);
 }
 
-// Values that are the World's own keep its full precision.
-template <class World, class T>
-void from_floats(std::span<const float> values, const World* world, T* target) {
-  for (size_t i = 0; i < values.size(); ++i) {
-    const bool is_own = values[i] == static_cast<float>(world[i]);
-    target[i] = static_cast<T>(is_own ? world[i] : static_cast<World>(values[i]));
-  }
-}
-
 // The inertia scales with the mass; massless bodies keep theirs.
-void write_masses(const mjModel& world_model, std::span<const float> masses, mjModel& model) {
-  from_floats(masses, world_model.body_mass, model.body_mass);
+void write_masses(const mjModel& world_model, std::span<const double> masses, mjModel& model) {
+  std::ranges::copy(masses, model.body_mass);
   for (int body = 0; body < model.nbody; ++body) {
     const double before = world_model.body_mass[body];
     const double ratio = before > 0 ? model.body_mass[body] / before : 1;
@@ -131,20 +140,30 @@ int live_field_size(const mjModel& model, LiveFieldId field) {
   return visit_field(model, field, [](const auto*, mjtSize n) { return static_cast<int>(n); });
 }
 
-std::vector<float> read_live_field(const mjModel& model, LiveFieldId field) {
-  std::vector<float> values;
+bool derives_constants(LiveFieldId field) {
+  return field == LiveFieldId::kBodyMass || field == LiveFieldId::kDofArmature;
+}
+
+std::vector<double> read_live_field(const mjModel& model, LiveFieldId field) {
+  std::vector<double> values;
   live_field_at(model, nullptr, field, &values);
   return values;
 }
 
+template <class T>
 void live_field_at(const mjModel& model, const LiveFields* live, LiveFieldId field,
-                   std::vector<float>* values) {
-  if (live != nullptr && !live->values[static_cast<size_t>(field)].empty()) {
-    *values = live->values[static_cast<size_t>(field)];
-    return;
-  }
-  visit_field(model, field, [&](const auto* from, mjtSize n) { values->assign(from, from + n); });
+                   std::vector<T>* values) {
+  const auto assign = [values](const auto* from, mjtSize n) {
+    values->resize(static_cast<size_t>(n));
+    std::transform(from, from + n, values->begin(), [](auto v) { return static_cast<T>(v); });
+  };
+  if (live == nullptr || live->values[static_cast<size_t>(field)].empty())
+    return visit_field(model, field, assign);
+  const std::vector<double>& changed = live->values[static_cast<size_t>(field)];
+  assign(changed.data(), static_cast<mjtSize>(changed.size()));
 }
+template void live_field_at(const mjModel&, const LiveFields*, LiveFieldId, std::vector<float>*);
+template void live_field_at(const mjModel&, const LiveFields*, LiveFieldId, std::vector<double>*);
 
 Status check_live_field(const mjModel& model, const SetLiveField& change) {
   if (static_cast<int>(change.field) < 0 || static_cast<int>(change.field) >= kLiveFieldCount) {
@@ -161,7 +180,7 @@ Status check_live_field(const mjModel& model, const SetLiveField& change) {
                              limits.name, size, change.first, end - 1)};
   }
   for (size_t i = 0; i < change.values.size(); ++i) {
-    const float value = change.values[i];
+    const double value = change.values[i];
     if (change.field == LiveFieldId::kBodyMass && value <= 0 &&
         model.body_mass[static_cast<size_t>(change.first) + i] > 0) {
       return Error{ErrorKind::kUsage, fmt::format("a mass of {} kg is not positive", value)};
@@ -181,7 +200,7 @@ std::shared_ptr<const LiveFields> change_live_field(const mjModel& world_model,
   auto next =
       current != nullptr ? std::make_shared<LiveFields>(*current) : std::make_shared<LiveFields>();
   next->values.resize(kLiveFieldCount);
-  std::vector<float>& values = next->values[static_cast<size_t>(change.field)];
+  std::vector<double>& values = next->values[static_cast<size_t>(change.field)];
   if (values.empty()) values = read_live_field(world_model, change.field);
   std::copy(change.values.begin(), change.values.end(), values.begin() + change.first);
   ++next->version;
@@ -195,13 +214,13 @@ uint64_t live_fields_digest(const LiveFields& live) {
   for (size_t field = 0; field < live.values.size(); ++field) {
     if (live.values[field].empty()) continue;
     hash = hash_bytes(&field, sizeof(field), hash);
-    hash = hash_span<float>(live.values[field], hash);
+    hash = hash_span<double>(live.values[field], hash);
   }
   return hash;
 }
 
 void own_live_field(LiveFieldId field, mjModel& model, std::vector<std::byte>* storage) {
-  GLOAM_CHECK(field != LiveFieldId::kBodyMass, "masses need a model of their own");
+  GLOAM_CHECK(!derives_constants(field), "masses and armatures need a model of their own");
   visit_field(model, field, [&](auto&& array, mjtSize n) {
     using Array = std::remove_reference_t<decltype(array)>;
     if constexpr (std::is_pointer_v<Array>) {  // the options are the model's own anyway
@@ -213,17 +232,18 @@ void own_live_field(LiveFieldId field, mjModel& model, std::vector<std::byte>* s
 }
 
 Status write_live_field(const mjModel& world_model, LiveFieldId field,
-                        std::span<const float> values, mjModel& model, mjData* scratch) {
+                        std::span<const double> values, mjModel& model, mjData* scratch) {
   GLOAM_CHECK(static_cast<int>(values.size()) == live_field_size(model, field),
               "a live field is written whole");
   if (field == LiveFieldId::kBodyMass) {
     write_masses(world_model, values, model);
-    return guarded([&] { mj_setConst(&model, scratch); });
+  } else {
+    visit_field(model, field, [&]<class T>(T* target, mjtSize) {
+      std::ranges::transform(values, target, [](double v) { return static_cast<T>(v); });
+    });
   }
-  visit_field(world_model, field, [&](const auto* world, mjtSize) {
-    visit_field(model, field, [&](auto* target, mjtSize) { from_floats(values, world, target); });
-  });
-  return {};
+  if (!derives_constants(field)) return {};
+  return guarded([&] { mj_setConst(&model, scratch); });
 }
 
 }  // namespace gloam

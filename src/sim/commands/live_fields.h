@@ -21,10 +21,14 @@ LiveFieldRange live_field_range(LiveFieldId field);
 /// Number of values of a field.
 int live_field_size(const mjModel& model, LiveFieldId field);
 /// The field as it stands in a model.
-std::vector<float> read_live_field(const mjModel& model, LiveFieldId field);
+std::vector<double> read_live_field(const mjModel& model, LiveFieldId field);
 /// The field at an instant: from `live` where it was changed, else from the World's model.
+/// T: double, or float for what is drawn.
+template <class T>
 void live_field_at(const mjModel& model, const LiveFields* live, LiveFieldId field,
-                   std::vector<float>* values);
+                   std::vector<T>* values);
+/// Whether MuJoCo derives other values of the model from this field (mj_setConst).
+bool derives_constants(LiveFieldId field);
 
 /// Refuses a range outside the field and values that physics or light cannot take.
 Status check_live_field(const mjModel& model, const SetLiveField& change);
@@ -39,14 +43,14 @@ std::shared_ptr<const LiveFields> change_live_field(const mjModel& world_model,
 uint64_t live_fields_digest(const LiveFields& live);
 
 /// Gives `model`, which refers to another model's arrays, an array of its own for this field, in
-/// `storage`. Not for kBodyMass, from which MuJoCo derives values all over the model.
+/// `storage`. Not for a field that derives_constants().
 void own_live_field(LiveFieldId field, mjModel& model, std::vector<std::byte>* storage);
 
 /// Writes one field into `model`, a private copy of `world_model`, or one that owns the field. New
-/// masses scale the inertias and renew what the model derives from them, as mj_setConst does; that
-/// needs `scratch`, a mjData of the model whose content is lost. Errors: what MuJoCo says of the
+/// masses scale the inertias. A field that derives_constants() calls mj_setConst, which needs
+/// `scratch`, a mjData of the model whose content is lost. Errors: what MuJoCo says of the
 /// new values.
 Status write_live_field(const mjModel& world_model, LiveFieldId field,
-                        std::span<const float> values, mjModel& model, mjData* scratch);
+                        std::span<const double> values, mjModel& model, mjData* scratch);
 
 }  // namespace gloam

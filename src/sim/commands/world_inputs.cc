@@ -23,4 +23,9 @@ std::vector<InputInfo> World::inputs() const {
   return inputs;
 }
 
+Result<std::vector<double>> World::live_field(const std::string& name) const {
+  GLOAM_TRY(const LiveFieldId field, find_live_field(name));
+  return read_live_field(*compiled_->model, field);
+}
+
 }  // namespace gloam

@@ -12,7 +12,7 @@ Result<std::unique_ptr<Restepper>> Restepper::create(RunRecord record, Controlle
   std::unique_ptr<Restepper> made(
       new Restepper(std::move(record), std::move(controllers), std::move(make_data)));
   const RunRecord& run = made->record_;
-  const auto& world = run.chapters.front().world;
+  GLOAM_TRY(const auto world, run.chapters.front().compiled());
   const Rational timestep =
       exact_rational(run.timestep.value_or(double{world->model->opt.timestep}));
   GLOAM_TRY(NextWorld first, make_next_world(world, run.seed, run.timestep, {}, made->make_data_));
@@ -39,10 +39,11 @@ void Restepper::repeat_inputs() {
 
 Status Restepper::begin_chapter(const RunRecord::Chapter& chapter) {
   const std::shared_ptr<const CompiledWorld> before = loop_->stepper().shared_world();
-  GLOAM_TRY(auto robots, controllers_(chapter.world));
-  GLOAM_TRY(NextWorld next, make_next_world(chapter.world, record_.seed, record_.timestep,
-                                            std::move(robots), make_data_));
-  const Correspondence same(*before, *chapter.world);
+  GLOAM_TRY(const auto world, chapter.compiled());
+  GLOAM_TRY(auto robots, controllers_(world));
+  GLOAM_TRY(NextWorld next,
+            make_next_world(world, record_.seed, record_.timestep, std::move(robots), make_data_));
+  const Correspondence same(*before, *world);
   return loop_->exchange(next, same);
 }
 

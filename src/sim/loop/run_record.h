@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "gloam/command.h"
@@ -13,11 +14,25 @@
 
 namespace gloam {
 
+/// What compiles to a World, and the sizes by which to tell whether it is the same one.
+struct WorldSource {
+  Scene scene;
+  std::string keyframe;
+  uint64_t sizes = 0;  ///< hash of the numbers of the model's elements
+};
+
 struct RunRecord {
-  /// A World and the step from which the run has been in it.
+  /// A World and the step from which the run has been in it. A long run goes through many Worlds of
+  /// 100 MB: the loop releases those of the past and keeps what compiles to them.
   struct Chapter {
-    std::shared_ptr<const CompiledWorld> world;
+    std::shared_ptr<const CompiledWorld> world;  ///< null once released
     int64_t from = 0;
+    std::shared_ptr<const WorldSource> source = {};  ///< of a released World
+
+    void release();
+    /// The World, compiled again if it was released. Error: it does not compile any more, or its
+    /// files have changed.
+    Result<std::shared_ptr<const CompiledWorld>> compiled() const;
   };
 
   uint64_t seed = 1;
@@ -30,14 +45,6 @@ struct RunRecord {
   int64_t step = 0;        ///< the instant's
   uint64_t hash = 0;       ///< of its state, chained from the initial one
   int64_t first_step = 0;  ///< of a run that went on from a checkpoint; 0 = of others
-
-  /// The World that a Command at `step` is for.
-  const CompiledWorld& world_at(int64_t step) const {
-    const Chapter* found = &chapters.front();
-    for (const Chapter& chapter : chapters)
-      if (chapter.from <= step) found = &chapter;
-    return *found->world;
-  }
 };
 
 }  // namespace gloam

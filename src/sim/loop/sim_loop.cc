@@ -50,6 +50,7 @@ Status SimLoop::exchange(NextWorld& next, const Correspondence& same) {
   if (!next.stepper->take_over(*stepper_, same)) return next.stepper->error();
   std::swap(stepper_, next.stepper);
   const int64_t step = stepper_->step_count();
+  chapters_.back().release();
   chapters_.push_back({stepper_->shared_world(), step});
   for (ControllerSlot& slot : next.controllers) {
     slot.begin(step);

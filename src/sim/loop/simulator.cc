@@ -12,20 +12,6 @@
 #include "sim/loop/scene_schedule.h"
 
 namespace gloam {
-namespace {
-
-// By the wall clock.
-bool is_paced(Pace pace) { return pace == Pace::kRealTime || pace == Pace::kSensors; }
-
-Error no_call_from_a_step() {
-  return {ErrorKind::kUsage,
-          "a controller or step hook cannot make its own simulation step, wait or change",
-          {},
-          "call it from another thread, or post a Command"};
-}
-
-}  // namespace
-
 Result<std::unique_ptr<Simulator>> Simulator::create(std::shared_ptr<const CompiledWorld> world,
                                                      SimulatorOptions options) {
   const double dt = options.timestep.value_or(world->model->opt.timestep);
@@ -63,112 +49,18 @@ Simulator::Simulator(std::unique_ptr<Stepper> stepper, Rational timestep, Simula
 
 Simulator::~Simulator() { stop(); }
 
-// ---- the sim thread ----
-
-void Simulator::run_thread() {
-  sim_thread_ = std::this_thread::get_id();
-  MujocoWarningCapture warnings;  // they are counted by type in mjData
-  while (!quit_) {
-    const uint32_t ticket = signal_->ticket();
-    const bool published = loop_.publish_due();
-    if (called_.load(std::memory_order_acquire)) {
-      answer_calls();
-    } else if (!published) {
-      signal_->wait(ticket);
-    } else if (loop_.stepper().failed() || !wants_step()) {
-      report_idle();
-      signal_->wait(ticket);
-    } else if (!is_paced(pace_) || pacer_.ready(loop_.stepper().step_count())) {
-      take_step();
-    }
-  }
-  const std::lock_guard lock(mutex_);
-  for (const std::function<void()>* f : calls_) (*f)();
-  calls_answered_ += static_cast<int64_t>(calls_.size());
-  calls_.clear();
-  loop_.close_queues();
-  sim_thread_ = std::thread::id();
-  running_ = false;  // from here on, calls run where they are made
-  idle_ = true;
-  changed_.notify_all();
-}
-
-void Simulator::take_step() {
-  const int64_t run = loop_.run();
-  const bool ok = loop_.advance();
-  if (loop_.run() != run) {
-    pacer_.restart();
-  } else if (ok) {
-    ++total_steps_;
-    if (remaining_ != kForever) --remaining_;
-  } else if (remaining_ != kForever) {
-    remaining_ = 0;  // a failed step(n) is over: a reset must not take up the rest of it
-  }
-  step_count_.store(loop_.stepper().step_count(), std::memory_order_relaxed);
-}
-
-void Simulator::answer_calls() {
-  const std::lock_guard lock(mutex_);
-  called_.store(false, std::memory_order_relaxed);
-  for (const std::function<void()>* f : calls_) (*f)();
-  calls_answered_ += static_cast<int64_t>(calls_.size());
-  calls_.clear();
-  idle_ = false;
-  step_count_.store(loop_.stepper().step_count(), std::memory_order_relaxed);
-  changed_.notify_all();
-}
-
-void Simulator::report_idle() {
-  loop_.flush_queues();
-  const std::lock_guard lock(mutex_);
-  if (called_.load(std::memory_order_relaxed)) return;  // not idle: somebody wants something
-  idle_ = true;
-  changed_.notify_all();
-}
-
-// ---- other threads ----
-
-// Runs f between two steps: on the sim thread if it lives, else here.
-void Simulator::call(const std::function<void()>& f) {
-  if (is_on_sim_thread()) return f();  // in the middle of a step: f only looks, or sets a wish
-  std::unique_lock lock(mutex_);
-  if (!running_) {
-    f();
-    step_count_.store(loop_.stepper().step_count(), std::memory_order_relaxed);
-    return;
-  }
-  calls_.push_back(&f);
-  const int64_t mine = ++calls_made_;
-  called_.store(true, std::memory_order_release);
-  signal_->raise();
-  changed_.wait(lock, [&] { return calls_answered_ >= mine; });
-}
-
-void Simulator::start(int64_t until) {
-  const std::lock_guard lock(mutex_);
-  GLOAM_CHECK(!running_ && !quit_, "a Simulator starts once");
-  until_ = pace_ == Pace::kLockstep ? loop_.stepper().step_count() : until;
-  running_ = true;
-  idle_ = false;
-  thread_ = std::thread([this] { run_thread(); });
-}
-
-void Simulator::stop() {
-  call([this] {
-    quit_ = true;
-    loop_.close_queues();
-  });
-  const std::lock_guard lock(join_mutex_);
-  if (thread_.joinable()) thread_.join();
-}
-
 void Simulator::pause() {
-  call([this] { paused_ = true; });
+  call([this] { paused_ = true; }, is_idle() ? Wake::kNo : Wake::kYes);
+}
+
+void Simulator::halt() {
+  halted_ = true;
+  signal_->raise();
 }
 
 void Simulator::resume() {
   call([this] {
-    paused_ = false;
+    paused_ = halted_ = false;
     if (pace_ != Pace::kLockstep) until_ = kForever;
     remaining_ = kForever;
     pacer_.restart();
@@ -177,37 +69,11 @@ void Simulator::resume() {
 
 void Simulator::run_until(int64_t step) {
   call([this, step] {
-    paused_ = false;
+    paused_ = halted_ = false;
     until_ = step;
     remaining_ = kForever;
     pacer_.restart();
   });
-}
-
-Status Simulator::step(int64_t n) {
-  if (is_on_sim_thread()) return no_call_from_a_step();
-  call([this, n] {
-    if (loop_.stepper().failed()) return;  // nothing to take up after a reset
-    paused_ = false;
-    until_ = kForever;
-    remaining_ = n;
-    pacer_.restart();
-  });
-  return wait();
-}
-
-Status Simulator::wait() {
-  if (is_on_sim_thread()) return no_call_from_a_step();
-  {
-    std::unique_lock lock(mutex_);
-    changed_.wait(lock, [this] { return idle_ || !running_; });
-  }
-  return status();
-}
-
-bool Simulator::wait_for(std::chrono::milliseconds time) {
-  std::unique_lock lock(mutex_);
-  return changed_.wait_for(lock, time, [this] { return idle_ || !running_; });
 }
 
 Status Simulator::reset() {
@@ -234,7 +100,7 @@ Status Simulator::seek(int64_t step) {
   call([&] {
     loop_.jump(std::clamp(step, int64_t{0}, end_));
     pace = std::exchange(pace_, Pace::kFast);
-    paused_ = false;
+    paused_ = halted_ = false;
     until_ = step;
     remaining_ = kForever;
   });
@@ -294,7 +160,7 @@ Result<std::shared_ptr<const CheckpointData>> Simulator::checkpoint() {
   if (is_on_sim_thread()) return no_call_from_a_step();
   auto made = std::make_shared<CheckpointData>();
   Status status;
-  call([&] {
+  look([&] {
     Stepper& stepper = loop_.stepper();
     if (stepper.failed()) {
       status = stepper.error();
@@ -368,12 +234,12 @@ Status Simulator::add_controller(int robot, std::unique_ptr<Controller> controll
 
 Status Simulator::set_step_hook(StepHook hook) {
   if (is_on_sim_thread()) return no_call_from_a_step();
-  call([&] { loop_.set_step_hook(std::move(hook)); });
+  look([&] { loop_.set_step_hook(std::move(hook)); });
   return {};
 }
 
 void Simulator::keep_hook_inputs(std::shared_ptr<HookInputs> inputs) {
-  call([&] { loop_.keep_hook_inputs(std::move(inputs)); });
+  look([&] { loop_.keep_hook_inputs(std::move(inputs)); });
 }
 
 Result<std::shared_ptr<SnapshotQueue>> Simulator::subscribe(const SubscriptionOptions& options) {
@@ -385,19 +251,19 @@ Result<std::shared_ptr<SnapshotQueue>> Simulator::subscribe(const SubscriptionOp
 
 Snapshot Simulator::latest() {
   Snapshot snapshot;
-  call([&] { snapshot = loop_.stepper().snapshot(); });
+  look([&] { snapshot = loop_.stepper().snapshot(); });
   return snapshot;
 }
 
 PhysicsMemory Simulator::memory() {
   PhysicsMemory memory;
-  call([&] { memory = loop_.stepper().memory(); });
+  look([&] { memory = loop_.stepper().memory(); });
   return memory;
 }
 
 Status Simulator::status() {
   Status status;
-  call([&] {
+  look([&] {
     if (loop_.stepper().failed()) status = loop_.stepper().error();
   });
   return status;
@@ -405,7 +271,7 @@ Status Simulator::status() {
 
 SimCounters Simulator::counters() {
   SimCounters counters;
-  call([&] {
+  look([&] {
     Stepper& stepper = loop_.stepper();
     counters = {.steps = total_steps_,
                 .resets = loop_.run(),

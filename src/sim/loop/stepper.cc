@@ -66,7 +66,10 @@ Status Stepper::make_memory(const DataMaker& make_data) {
 }
 
 PhysicsMemory Stepper::memory() const {
-  if (owns_all_) return {{private_, &private_->model()}, data_};
+  if (owns_all_) {
+    private_->model().opt = model_.opt;  // which live fields and the weather change
+    return {{private_, &private_->model()}, data_};
+  }
   return {{world_, world_->model.get()}, data_};
 }
 
@@ -117,15 +120,15 @@ bool Stepper::take_back_model() {
 
 // Live fields are written into the arrays: not into those that all simulations of the World share.
 bool Stepper::own_the_field(LiveFieldId field) {
-  if (field == LiveFieldId::kBodyMass) return own_for_masses();
+  if (derives_constants(field)) return own_for_constants();
   const bool is_owned = live_ != nullptr && !live_->values[static_cast<size_t>(field)].empty();
   if (!owns_all_ && !is_owned)
     own_live_field(field, model_, &own_fields_[static_cast<size_t>(field)]);
   return true;
 }
 
-// MuJoCo derives values all over the model from masses.
-bool Stepper::own_for_masses() {
+// MuJoCo derives values all over the model from masses and armatures.
+bool Stepper::own_for_constants() {
   const bool owned_all = owns_all_;
   if (!owned_all) {
     const Status owned = own_all();
@@ -139,7 +142,7 @@ bool Stepper::own_for_masses() {
   model_.bvh_aabb = private_->model().bvh_aabb;
   if (owned_all) return true;
   for (int f = 0; live_ != nullptr && f < kLiveFieldCount; ++f) {  // what changed before
-    const std::vector<float>& values = live_->values[static_cast<size_t>(f)];
+    const std::vector<double>& values = live_->values[static_cast<size_t>(f)];
     if (values.empty()) continue;
     const Status written = write_live_field(*world_->model, static_cast<LiveFieldId>(f), values,
                                             model_, scratch_.get());
@@ -256,7 +259,7 @@ void Stepper::apply(const Command& command) {
 
 // The one Command that allocates: a new version of the fields, and an array when one first changes.
 void Stepper::change_live(const SetLiveField& change) {
-  if (change.field == LiveFieldId::kBodyMass && scratch_ == nullptr) {
+  if (derives_constants(change.field) && scratch_ == nullptr) {
     mjData* scratch = nullptr;
     const mjModel* model = &model_;
     if (!try_mujoco([&] { scratch = mj_makeData(model); })) {

@@ -102,7 +102,7 @@ class Stepper {
   bool own_the_field(LiveFieldId field);
   void take_model(const mjModel& model);
   Status own_all();
-  bool own_for_masses();
+  bool own_for_constants();
   bool take_back_model();
   Status make_memory(const DataMaker& make_data);
   void count_diagnostics();

@@ -27,23 +27,21 @@ bool Stepper::set_live(const std::shared_ptr<const LiveFields>& live) {
   live_.reset();
   if (!take_back_model()) return false;
   if (live == nullptr) return true;
-  constexpr auto kMass = static_cast<size_t>(LiveFieldId::kBodyMass);
-  if (!live->values[kMass].empty() && scratch_ == nullptr) {
+  std::vector<LiveFieldId> changed;
+  for (int f = 0; f < kLiveFieldCount; ++f)
+    if (!live->values[static_cast<size_t>(f)].empty())
+      changed.push_back(static_cast<LiveFieldId>(f));
+  // Masses and armatures first: they bring a whole model, in which nothing else is changed yet.
+  std::ranges::stable_partition(changed, derives_constants);
+  if (!changed.empty() && derives_constants(changed[0]) && scratch_ == nullptr) {
     mjData* scratch = nullptr;
     const mjModel* model = &model_;
     if (!try_mujoco([&] { scratch = mj_makeData(model); }))
       return fail({ErrorKind::kInput, mujoco_error_message()});
     scratch_.reset(scratch);
   }
-  // Masses first: they bring a whole model, in which nothing else is changed yet.
-  std::vector<LiveFieldId> changed;
-  for (int f = 0; f < kLiveFieldCount; ++f)
-    if (!live->values[static_cast<size_t>(f)].empty())
-      changed.push_back(static_cast<LiveFieldId>(f));
-  std::stable_partition(changed.begin(), changed.end(),
-                        [](LiveFieldId field) { return field == LiveFieldId::kBodyMass; });
   for (const LiveFieldId field : changed) {
-    const std::vector<float>& values = live->values[static_cast<size_t>(field)];
+    const std::vector<double>& values = live->values[static_cast<size_t>(field)];
     if (!own_the_field(field)) return false;
     const Status written = write_live_field(*world_->model, field, values, model_, scratch_.get());
     if (!written.ok()) return fail(written.error());

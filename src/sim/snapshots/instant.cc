@@ -81,7 +81,7 @@ Status Instant::Solved::follow_live_fields(const SnapshotData& in) {
   GLOAM_TRY_STATUS(guarded([&] { mj_copyModel(copy, world->model.get()); }));
   if (scratch == nullptr) scratch = make_data(*copy);
   for (int f = 0; in.live != nullptr && f < kLiveFieldCount; ++f) {
-    const std::vector<float>& values = in.live->values[static_cast<size_t>(f)];
+    const std::vector<double>& values = in.live->values[static_cast<size_t>(f)];
     if (values.empty()) continue;
     GLOAM_TRY_STATUS(
         write_live_field(*world->model, static_cast<LiveFieldId>(f), values, *copy, scratch.get()));

@@ -46,7 +46,7 @@ Status PoseSolver::follow_live_fields(const std::shared_ptr<const LiveFields>& l
   const auto field = static_cast<size_t>(LiveFieldId::kBodyMass);
   const bool changed = live != nullptr && !live->values[field].empty();
   if (!changed && masses_.empty()) return {};
-  const std::vector<float> masses =
+  const std::vector<double> masses =
       changed ? live->values[field] : read_live_field(*world_->model, LiveFieldId::kBodyMass);
   if (masses == masses_) return {};
   own_the_model();
@@ -124,8 +124,7 @@ void PoseSolver::fill_vertices(const LiveFields* live, PoseFrame& frame) {
                  frame.vertices.begin() + 3 * m.nskinvert,
                  [](mjtNum x) { return static_cast<float>(x); });
   live_field_at(m, live, LiveFieldId::kGravity, &gravity_);
-  const double gravity[3] = {gravity_[0], gravity_[1], gravity_[2]};
-  place_capsules(m, d, gravity, layout_, frame.vertices.data());
+  place_capsules(m, d, gravity_.data(), layout_, frame.vertices.data());
 }
 
 void PoseSolver::fill_live(const LiveFields* live, PoseFrame& frame) {

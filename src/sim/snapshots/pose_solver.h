@@ -38,9 +38,10 @@ class PoseSolver {
   ModelPtr own_model_;  // only where the World's own will not do: other masses, or sleep
   DataPtr data_, scratch_;
   DeformableLayout layout_;
-  std::vector<float> masses_;            // in own_model_; empty = the World's
-  std::vector<float> gravity_, active_;  // scratch to read live fields into
-  std::vector<float> heights_;           // scratch for surfaces
+  std::vector<double> masses_;   // in own_model_; empty = the World's
+  std::vector<double> gravity_;  // scratch to read live fields into
+  std::vector<float> active_;
+  std::vector<float> heights_;  // scratch for surfaces
   int64_t meshed_ = 0;
 };
 

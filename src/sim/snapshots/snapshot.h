@@ -19,7 +19,7 @@ struct LiveFields {
   uint64_t version = 0;  ///< changes since reset
   uint64_t serial = 0;   ///< changes since the simulation was made, so that no two have the same
   uint64_t height_field_serial = 0;  ///< serial of the last change of the height fields, 0 = none
-  std::vector<std::vector<float>> values;  ///< by LiveFieldId; empty = as in the World's model
+  std::vector<std::vector<double>> values;  ///< by LiveFieldId; empty = as in the World's model
 };
 
 struct SnapshotData {

@@ -9,6 +9,7 @@
 #include <unordered_map>
 
 #include "sim/commands/live_fields.h"
+#include "sim/state/state_layout.h"
 
 namespace gloam {
 namespace {
@@ -164,11 +165,36 @@ std::vector<int> Correspondence::live_values(LiveFieldId field) const {
       return light;
     case LiveFieldId::kMaterialColor:
       return spread(material, 4);
+    case LiveFieldId::kActuatorGain:
+      return spread(actuator, mjNGAIN);
+    case LiveFieldId::kActuatorBias:
+      return spread(actuator, mjNBIAS);
+    case LiveFieldId::kJointStiffness:
+      return joint;
+    case LiveFieldId::kDofArmature:
+    case LiveFieldId::kDofDamping:
+    case LiveFieldId::kDofFrictionLoss:
+      return dof_places();
     case LiveFieldId::kHeightField:
-      break;
+      return height_places();
     default:
       return material;  // one number of each
   }
+}
+
+std::vector<int> Correspondence::dof_places() const {
+  const mjModel &b = *before.model, &a = *after.model;
+  std::vector<int> places(static_cast<size_t>(a.nv), -1);
+  for (int id = 0; id < a.njnt; ++id) {
+    const int old = joint[static_cast<size_t>(id)];
+    if (old < 0 || b.jnt_type[old] != a.jnt_type[id]) continue;
+    const auto first = places.begin() + a.jnt_dofadr[id];
+    std::iota(first, first + joint_width(a.jnt_type[id]).qvel, b.jnt_dofadr[old]);
+  }
+  return places;
+}
+
+std::vector<int> Correspondence::height_places() const {
   const mjModel &b = *before.model, &a = *after.model;
   std::vector<int> places(static_cast<size_t>(a.nhfielddata), -1);
   for (int id = 0; id < a.nhfield; ++id) {

@@ -22,6 +22,9 @@ struct Correspondence {
 
   /// Of every value of a live field in `after`: its place in `before`, -1 = new.
   std::vector<int> live_values(LiveFieldId field) const;
+  /// The same of the degrees of freedom, and of the samples of height fields.
+  std::vector<int> dof_places() const;
+  std::vector<int> height_places() const;
   /// A Command for `before` as one for `after`; nothing where what it names is gone.
   std::optional<Command> translate(const Command& command) const;
 };

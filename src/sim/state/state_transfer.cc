@@ -153,10 +153,10 @@ std::vector<SetLiveField> remaining_live_fields(const Correspondence& same,
   std::vector<SetLiveField> changes;
   for (int i = 0; i < kLiveFieldCount; ++i) {
     const auto field = static_cast<LiveFieldId>(i);
-    const std::vector<float>& values = live.values[static_cast<size_t>(i)];
+    const std::vector<double>& values = live.values[static_cast<size_t>(i)];
     if (values.empty()) continue;
-    const std::vector<float> before = read_live_field(*same.before.model, field);
-    std::vector<float> after = read_live_field(*same.after.model, field);
+    const std::vector<double> before = read_live_field(*same.before.model, field);
+    std::vector<double> after = read_live_field(*same.after.model, field);
     bool any = false;
     const std::vector<int> places = same.live_values(field);
     for (size_t a = 0; a < places.size(); ++a) {

@@ -50,7 +50,7 @@ void disturb(Simulator& sim, int64_t step) {
   ASSERT_TRUE(sim.post({step, SetWrench{body(world, "ball"), {0.1, 0, 1}, {}}}).ok());
   ASSERT_TRUE(sim.post({step, DragBody{body(world, "base"), {0, 0, .05}, {.2, 0, 1}}}).ok());
   ASSERT_TRUE(sim.post({step + 20, SetLiveField{LiveFieldId::kGravity, 0, {1, 0, -8}}}).ok());
-  ASSERT_TRUE(sim.post({step + 30, SetLiveField{LiveFieldId::kBodyMass, 1, {1.5f}}}).ok());
+  ASSERT_TRUE(sim.post({step + 30, SetLiveField{LiveFieldId::kBodyMass, 1, {1.5}}}).ok());
 }
 
 template <class C>

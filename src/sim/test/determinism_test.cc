@@ -134,7 +134,8 @@ TEST(Determinism, ReplayOfTheCommandLogIsExact) {
             (void)sim->post({.what = DragBody{base, {0, 0, .05}, {r, 0, 1}, i % 2 == 0}}).ok();
             break;
           case 5:
-            (void)sim->post({.what = SetLiveField{LiveFieldId::kBodyMass, base.id, {float(5 + r)}}})
+            (void)sim
+                ->post({.what = SetLiveField{LiveFieldId::kBodyMass, base.id, {double(5 + r)}}})
                 .ok();
             break;
           case 6:

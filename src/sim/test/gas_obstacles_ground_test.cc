@@ -78,7 +78,7 @@ TEST(GasObstacles, HeightFieldsAreSolidUnderTheSurfaceThatMuJoCoHas) {
   };
   expect_ground(before);
   const GasWalls first = rig.walls;
-  SetLiveField flat{LiveFieldId::kHeightField, 0, std::vector<float>(7 * 9, .9f)};
+  SetLiveField flat{LiveFieldId::kHeightField, 0, std::vector<double>(7 * 9, .9)};
   ASSERT_TRUE(sim->post({.what = flat}).ok());
   ASSERT_TRUE(sim->step(1).ok());
   std::fill(m.hfield_data, m.hfield_data + 7 * 9, .9f);  // for mj_ray

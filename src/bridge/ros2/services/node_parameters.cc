@@ -108,7 +108,7 @@ Status NodeParameters::set_own(const ri::Parameter& parameter) {
   if (parameter.name == "use_sim_time") return {};
   std::vector<double> numbers;
   numbers_of(parameter.value, &numbers);
-  return op_.set_live_field(live_field_of(parameter.name), 0, {numbers.begin(), numbers.end()});
+  return op_.set_live_field(live_field_of(parameter.name), 0, std::move(numbers));
 }
 
 // Checks without a change come first; options all at once; then the rest.

@@ -124,11 +124,10 @@ Status add_velocity(const Call& call, Packer& out) {
 }
 
 Status live_field(const Call& call, Packer& out) {
-  const std::vector<double> given = call.arguments.numbers("values");
   const int64_t first = call.arguments.integer("first");
   if (first < 0 || first > INT32_MAX) return Error{ErrorKind::kInput, "'first' is out of range"};
   GLOAM_TRY_STATUS(call.services.operations().set_live_field(
-      call.arguments.text("field"), static_cast<int>(first), {given.begin(), given.end()}));
+      call.arguments.text("field"), static_cast<int>(first), call.arguments.numbers("values")));
   pack_nothing(out);
   return {};
 }
@@ -196,7 +195,8 @@ std::vector<Operation> command_operations() {
        {body, {"velocity", kNumbers, true, "m/s, (3)", "world axes", 3}, kStepArgument},
        add_velocity},
       {"live_field",
-       "changes numbers of the model while it runs: gravity, wind, masses, lights, colours",
+       "changes numbers of the model while it runs: gravity, wind, masses, friction, gains, "
+       "lights, colours",
        kAtOnce,
        {{"field", kText, true, "", "one of hello's live_fields"},
         {"values", kNumbers, true, "the field's own", "elements from 'first' on"},

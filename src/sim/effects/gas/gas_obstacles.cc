@@ -8,7 +8,7 @@
 #include "base/check.h"
 #include "gloam/command.h"
 #include "scene/files/mujoco_guard.h"
-#include "world/model_memory.h"
+#include "sim/commands/live_fields.h"
 #include "world/shapes/visual_pose.h"
 
 namespace gloam {
@@ -182,8 +182,9 @@ bool GasObstacles::follow_height_fields(const LiveFields* live) {
   const uint64_t serial = live != nullptr ? live->height_field_serial : 0;
   if (serial == height_serial_ || height_geoms_.empty()) return false;
   height_serial_ = serial;
-  const auto field = static_cast<size_t>(LiveFieldId::kHeightField);
-  voxelise_height_fields(serial != 0 ? live->values[field].data() : model_.hfield_data);
+  std::vector<float> heights;
+  live_field_at(model_, serial != 0 ? live : nullptr, LiveFieldId::kHeightField, &heights);
+  voxelise_height_fields(heights.data());
   return true;
 }
 
