@@ -499,6 +499,7 @@ def python(quick):
     """a call of step() from Python against the same call from C++, in turn; the arrays of a frame"""
     data = run_json(ROOT / "gloam", "python", ROOT / "bench" / "python_overhead.py", BIN / "bench_step_calls")
     for scene, row in data["steps"].items():
+        yield at_most(f"µs of a call of sim.step() beside its step, {scene}", row["call_us"], 5, "wall clock, against the same steps in one call, median of 7")
         yield at_most(f"µs that Python adds to a step, {scene}", row["python_adds_us"], 5, f"CPU time of the caller, median of 7 turns; C++ {row['cpp_us']:.1f} µs a step, wall {row['wall_difference_us']:+.1f} µs")
     cold, warm = data["frame_us"]
     yield at_most("µs to the arrays, pose and matrix of a frame of 640x480", cold, 50, f"right after it was rendered, caches cold; again {warm:.1f} µs; median of 30")

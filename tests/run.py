@@ -408,6 +408,8 @@ def full(tally):
         "first look at models": lambda t: python_tests(t, "tests/e2e/gallery_models.py"),
         "slow commands of documents": lambda t: python_tests(t, "tests/e2e/docs_test.py", "weather", GLOAM_TEST_FULL="1"),
         "slow tests of Python": slow_api_tests,
+        "memory over 200 changes by ZeroMQ": lambda t: python_tests(t, "tests/e2e/zmq_test.py", "keep_no_world", GLOAM_TEST_FULL="1"),
+        "memory over 200 changes by ROS 2": lambda t: python_tests(t, "tests/e2e/ros2_services_test.py", "keep_no_world", GLOAM_TEST_FULL="1"),
         "memory of Python under asan": sanitized_api_tests,
         "limits of memory": lambda t: python_tests(t, "tests/e2e/memory_limit_test.py", GLOAM_TEST_FULL="1"),
         "Debian 13": lambda t: python_tests(t, "tests/e2e/debian13.py", GLOAM_AS_BUILT=""),

@@ -51,7 +51,7 @@ class Dynamics:
             self._scale(field, ids, factors)
 
     def _scale(self, field: str, ids: Ids, factors: Doubles) -> None:
-        nominal: Doubles = self._sim._core_world.live_field(field)
+        nominal: Doubles = np.asarray(self._sim._core_world.live_field(field), dtype=np.float64)
         width = _WIDTH.get(field, 1)
         values = nominal.reshape(-1, width)[ids] * factors[:, None]
         for first, end in _runs(ids):

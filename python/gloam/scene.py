@@ -13,6 +13,7 @@ from gloam import _core
 
 from . import _toml
 from .errors import Error, NotFoundError, UsageError
+from .option_values import frozen
 from .progress import ProgressLike, watch
 from .world import World
 
@@ -49,7 +50,7 @@ def describe(path: str) -> str:
         node = _resolve(node, root)
         inner = node.get("properties", {})
         if part not in inner:
-            if may_be_a_name or isinstance(node.get("additionalProperties"), dict) or ("properties" not in node and node is not root):
+            if may_be_a_name or isinstance(node.get("additionalProperties"), dict):
                 may_be_a_name = False
                 continue
             raise NotFoundError(f"there is no option '{path}': no '{part}' is known", hint=_core.suggest_name(part, list(inner)))
@@ -144,9 +145,9 @@ class Scene:
         return _unpickled, (type(self), self.to_toml(), os.fspath(self._scene.bare_model), os.fspath(self.file), os.getcwd(), root, strict, self.name)
 
     def __getitem__(self, path: str) -> Any:
-        """Value of an option; None where it is not given."""
+        """Value of an option, a copy; None where it is not given."""
         try:
-            return _toml.from_text(self._scene.get(path))
+            return frozen(_toml.from_text(self._scene.get(path)))
         except NotFoundError:
             raise
         except Error as error:
@@ -166,7 +167,7 @@ class Scene:
 
     def options(self) -> list[Option]:
         """All options of the tables that stand in the scene."""
-        return [Option(o["path"], _toml.from_text(o["value"]), o["unit"], o["low"], o["high"], tuple(o["choices"]), _description(o["path"]))
+        return [Option(o["path"], frozen(_toml.from_text(o["value"])), o["unit"], o["low"], o["high"], tuple(o["choices"]), _description(o["path"]))
                 for o in self._scene.options()]
 
     def __iter__(self) -> Iterator[str]:

@@ -118,10 +118,10 @@ void wait_for(const std::function<void()>& job, const std::function<void()>& sto
   if (thrown) std::rethrow_exception(thrown);
 }
 
-bool wait_patiently(const std::function<bool()>& is_done) {
+bool wait_patiently(const std::function<bool()>& is_done, std::chrono::seconds patience) {
   using Clock = std::chrono::steady_clock;
   constexpr std::chrono::milliseconds kNap{1};
-  for (const auto end = Clock::now() + kPatience; !is_done();) {
+  for (const auto end = Clock::now() + patience; !is_done();) {
     if (Clock::now() > end) return false;
     {
       const nb::gil_scoped_release released;

@@ -48,9 +48,9 @@ T take(Result<T> result) {
 
 /// Time in which callbacks and hooks have to return when their stream or simulation is closed.
 constexpr std::chrono::seconds kPatience{5};
-/// Waits until `is_done`, kPatience at most, with the interpreter free meanwhile. Whether it was.
-/// Ctrl-C is raised.
-bool wait_patiently(const std::function<bool()>& is_done);
+/// Waits until `is_done` with the interpreter free meanwhile. Whether it was. Ctrl-C is raised.
+bool wait_patiently(const std::function<bool()>& is_done,
+                    std::chrono::seconds patience = kPatience);
 
 /// Runs `job` on another thread while this one looks after signals: a Ctrl-C calls `stop` and is
 /// raised once the job has ended. For what may take longer than a tenth of a second.

@@ -83,10 +83,12 @@ void Run::close() {
     raise("UsageError", "a callback or hook cannot wait for its own simulation",
           "call it from another thread, or use commands");
   simulation_->request_stop();  // a thread that steps it ends
+  has_hook_ = false;
   for (const auto& inbox : open_inboxes()) inbox->refuse_callbacks();
   if (!wait_patiently([this] { return stuck().empty(); })) leave_behind(stuck());
   std::unique_lock lock(turn_, std::defer_lock);
-  if (!wait_patiently([&] { return lock.try_lock(); })) leave_behind("a call of another thread");
+  // A thread that steps has been stopped; a recompile takes the time that it takes.
+  wait_patiently([&] { return lock.try_lock(); }, std::chrono::years(1));
   if (is_closed_) return;
   for (const auto& inbox : open_inboxes()) inbox->close();
   is_closed_ = true;
@@ -197,7 +199,7 @@ void Run::call_hook(const mjModel_* model, mjData_* data) {
   if (!has_hook_.load(std::memory_order_acquire)) return;
   const nb::gil_scoped_acquire acquired;
   const nb::object hook = hook_;  // kept for as long as it runs
-  if (!hook.is_valid() || hook.is_none()) return;
+  if (!has_hook_ || !hook.is_valid() || hook.is_none()) return;
   const CallbackScope inside;
   is_in_hook_ = true;
   try {

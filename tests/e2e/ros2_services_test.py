@@ -141,6 +141,22 @@ class Ros2Services(unittest.TestCase):
             self.assertEqual(self.codes(set_state(QUITTING)), [OK])
             self.assertEqual(self.process.wait(timeout=30), 0)
 
+    def test_entities_that_come_and_go_keep_no_world_in_memory(self):
+        """Each World holds a height field of 8 MB; 200 recompiles in full, else 40."""
+        (self.folder / "room.xml").write_text('<mujoco><option timestep="0.002"/><asset><hfield name="hill" nrow="1000" ncol="2000" '
+                                              'size="5 5 .1 .1"/></asset><worldbody><geom type="hfield" hfield="hill"/></worldbody></mujoco>')
+        come_and_go = [spawn("ball", text=BALL), service("DeleteEntity", {"entity": "ball"})]
+
+        def resident():
+            return int(Path(f"/proc/{self.process.pid}/statm").read_text().split()[1]) * os.sysconf("SC_PAGE_SIZE") / 2**20
+
+        with self.gloam():
+            self.assertEqual(self.codes(*come_and_go * 3), [OK] * 6)
+            before = resident()
+            times = 100 if os.environ.get("GLOAM_TEST_FULL") else 20
+            self.assertEqual(self.codes(*come_and_go * times), [OK] * 2 * times)
+            self.assertLess(resident() - before, 60)
+
     def test_entities_are_listed_moved_and_told_of(self):
         with self.gloam():
             entities, filtered, states = self.call(

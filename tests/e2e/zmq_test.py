@@ -50,6 +50,11 @@ def wait_for(condition, seconds=30):
         time.sleep(0.02)
 
 
+def resident(pid):
+    """Memory of a process [MB]."""
+    return int(Path(f"/proc/{pid}/statm").read_text().split()[1]) * os.sysconf("SC_PAGE_SIZE") / 2**20
+
+
 def free_port():
     """A port that is free, and the next one, too; below those that the system gives to clients."""
     for port in random.sample(range(20000, 32000), 100):
@@ -141,6 +146,37 @@ class Zmq(unittest.TestCase):
             self.assertGreater(sim.state()["step"], driven["step"])
             self.assertEqual(sim.record_stop(), file)
         said = subprocess.run([str(PROGRAM), "replay", file, "--verify"], text=True, capture_output=True, check=True).stdout
+        self.assertRegex(said, r"^0 of \d+ steps differ")
+
+    def test_changes_of_the_scene_keep_no_world_in_memory(self):
+        """Each World holds a height field of 8 MB; 200 changes in full, else 30."""
+        (self.folder / "place.xml").write_text('<mujoco><asset><hfield name="hill" nrow="1000" ncol="2000" size="5 5 .1 .1"/></asset>'
+                                               '<worldbody><geom type="hfield" hfield="hill"/></worldbody></mujoco>')
+        server = self.serve("--paused")
+        with self.client() as sim:
+            def change(i):
+                sim.set_options({"camera.front.fovy": 40.5 + i % 20})
+                sim.spawn(text=PENDULUM, name=f"more{i}")
+                sim.step(1)
+                sim.remove(f"more{i}")
+            for i in range(4):
+                change(i)
+            before = resident(server.pid)
+            for i in range(66 if os.environ.get("GLOAM_TEST_FULL") else 10):
+                change(i)
+            self.assertLess(resident(server.pid) - before, 60, "of three Worlds of 8 MB a change")
+
+    def test_live_fields_are_set_in_double_precision(self):
+        self.serve("--paused")
+        with self.client() as sim:
+            sim.call("live_field", field="gravity", values=[0.1, 0.2, -3.7])
+            sim.step(1)
+            file = sim.record_start("fields")
+            sim.call("live_field", field="body_mass", values=[1.1], first=1)
+            sim.call("live_field", field="dof_damping", values=[0.3], first=0)
+            sim.step(10)
+            sim.record_stop()
+        said = subprocess.run([str(PROGRAM), "replay", file, "--verify"], text=True, capture_output=True).stdout
         self.assertRegex(said, r"^0 of \d+ steps differ")
 
     def test_pictures_over_shared_memory_are_those_over_the_socket(self):

@@ -202,14 +202,21 @@ std::optional<Status> Simulator::begin_steps(int64_t n) {
   return loop_.stepper().failed() ? Status(loop_.stepper().error()) : Status();
 }
 
-// False when the sim thread has to go on: a required reader is full, or another thread has called.
+// False when the sim thread has to go on: a required reader is full, or another thread has changed
+// what is to be done.
 bool Simulator::take_steps_here() {
   MujocoWarningCapture warnings;  // as on the sim thread
   for (;;) {
     const bool published = loop_.publish_due();
-    if (!published || called_.load(std::memory_order_acquire)) return false;
-    if (loop_.stepper().failed() || !wants_step()) return report_idle();
-    take_step();
+    if (called_.load(std::memory_order_acquire)) {
+      answer_calls();
+    } else if (!published || quit_ || remaining_ == kForever || pace_ == Pace::kRealTime) {
+      return false;
+    } else if (!loop_.stepper().failed() && wants_step()) {
+      take_step();
+    } else if (report_idle()) {
+      return true;
+    }
   }
 }
 
