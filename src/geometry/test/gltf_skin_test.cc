@@ -11,7 +11,7 @@ namespace {
 using nlohmann::json;
 using testing::HasSubstr;
 
-const std::vector<Vec3f> kTriangle = {{-50, 0, 0}, {50, 0, 0}, {0, 100, 0}};
+const std::vector<Vec3f> kSkinnedTriangle = {{-50, 0, 0}, {50, 0, 0}, {0, 100, 0}};
 
 // Column by column.
 std::vector<float> scale_and_shift(float scale, Vec3f p) {
@@ -28,7 +28,7 @@ class GltfSkin : public ::testing::Test {
       all.insert(all.end(), {joints[2 * i], joints[2 * i + 1], 0, 0});
       weights.insert(weights.end(), {0.5f, 0.5f, 0, 0});
     }
-    more["POSITION"] = file_.add_positions(kTriangle);
+    more["POSITION"] = file_.add_positions(kSkinnedTriangle);
     more["JOINTS_0"] = file_.add_accessor(all, "VEC4", 5121, 3);
     more["WEIGHTS_0"] = file_.add_accessor(weights, "VEC4", 5126, 3);
     return file_.add_mesh({{"attributes", more}});

@@ -11,7 +11,7 @@
 namespace gloam {
 namespace {
 
-void add_box(Vec3f at, Vec3f half, TriangleMesh* mesh, bool inwards = false) {
+void append_box(Vec3f at, Vec3f half, TriangleMesh* mesh, bool inwards = false) {
   std::vector<Vec3f> corners;
   for (int i = 0; i < 8; ++i)
     corners.push_back({at.x + (i & 1 ? half.x : -half.x), at.y + (i & 2 ? half.y : -half.y),
@@ -32,7 +32,8 @@ double volume_of(const std::vector<TriangleMesh>& hulls) {
 
 TEST(MeshPieces, OfBoxesAreTheBoxes) {
   TriangleMesh mesh;
-  for (int i = 0; i < 5; ++i) add_box({0.3f * static_cast<float>(i), 0, 0}, {.2f, .1f, .1f}, &mesh);
+  for (int i = 0; i < 5; ++i)
+    append_box({0.3f * static_cast<float>(i), 0, 0}, {.2f, .1f, .1f}, &mesh);
   const Pieces pieces = pieces_of(mesh, 0.05);
   EXPECT_EQ(pieces.convex.size(), 5u);
   EXPECT_TRUE(pieces.closed.empty());
@@ -41,8 +42,8 @@ TEST(MeshPieces, OfBoxesAreTheBoxes) {
 
 TEST(MeshPieces, WithAHollowStayWhole) {
   TriangleMesh mesh;
-  add_box({0, 0, 0}, {1, 1, 1}, &mesh);
-  add_box({0, 0, 0}, {.8f, .8f, .8f}, &mesh, true);
+  append_box({0, 0, 0}, {1, 1, 1}, &mesh);
+  append_box({0, 0, 0}, {.8f, .8f, .8f}, &mesh, true);
   const Pieces pieces = pieces_of(mesh, 0.05);
   EXPECT_TRUE(pieces.convex.empty());
   ASSERT_EQ(pieces.closed.size(), 1u);
@@ -51,9 +52,9 @@ TEST(MeshPieces, WithAHollowStayWhole) {
 
 TEST(MeshPieces, ThatAreOpenAreKeptTogether) {
   TriangleMesh mesh;
-  add_box({0, 0, 0}, {1, 1, 1}, &mesh);
+  append_box({0, 0, 0}, {1, 1, 1}, &mesh);
   for (const float x : {3.0f, 6.0f}) {
-    add_box({x, 0, 0}, {1, 1, 1}, &mesh);
+    append_box({x, 0, 0}, {1, 1, 1}, &mesh);
     mesh.indices.resize(mesh.indices.size() - 3);
   }
   const Pieces pieces = pieces_of(mesh, 0.05);
@@ -63,7 +64,8 @@ TEST(MeshPieces, ThatAreOpenAreKeptTogether) {
 
 TEST(MeshPieces, AreMergedWhereThatEnclosesLeast) {
   TriangleMesh mesh;
-  for (const float x : {0.0f, 1.0f, 5.0f, 6.0f, 20.0f}) add_box({x, 0, 0}, {.5f, .5f, .5f}, &mesh);
+  for (const float x : {0.0f, 1.0f, 5.0f, 6.0f, 20.0f})
+    append_box({x, 0, 0}, {.5f, .5f, .5f}, &mesh);
   const auto merged = merge_hulls(pieces_of(mesh, 0.05).convex, 3);
   ASSERT_EQ(merged.size(), 3u);
   EXPECT_NEAR(volume_of(merged), 5, 1e-4) << "neighbours with a common face";
@@ -80,7 +82,7 @@ TEST(MeshPieces, ThatCrossEachOtherAreConvertedAtOnce) {
   };
   for (int i = 0; i < 48; ++i) {
     const Vec3f at{2 * draw() - 1, 2 * draw() - 1, 2 * draw() - 1};
-    add_box(at, {.05f + .3f * draw(), .05f + .3f * draw(), .05f + .3f * draw()}, &mesh);
+    append_box(at, {.05f + .3f * draw(), .05f + .3f * draw(), .05f + .3f * draw()}, &mesh);
   }
   ASSERT_EQ(mesh.triangle_count(), 576u);
   const auto converted = convert_mesh(mesh, {.colliders = "hulls"});
