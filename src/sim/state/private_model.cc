@@ -35,7 +35,9 @@ void for_each_own_array(mjModel& m, const mjModel& world, Use&& use) {
   if (!is_shared(#name))             \
     use(m.name, world.name,          \
         sizeof(type) * static_cast<size_t>(m.rows) * static_cast<size_t>(columns));
+#define XNV X
   MJMODEL_POINTERS
+#undef XNV
 #undef X
 }
 
