@@ -21,7 +21,7 @@ def test_data_is_the_memory_that_is_stepped(tmp_path: Path) -> None:
         assert isinstance(data, mujoco.MjData) and isinstance(model, mujoco.MjModel) and sim.data is data and sim.model is model
         addresses = [a.__array_interface__["data"][0] for a in (data.qpos, sim.memory.array("qpos"), sim.joints["free"].qpos)]
         assert len(set(addresses)) == 1
-        assert model.geom_size.__array_interface__["data"][0] == sim.memory.array("geom_size").__array_interface__["data"][0]
+        assert np.array_equal(model.geom_size, sim.memory.array("geom_size"))
         sim.step(100)
         assert data.time == pytest.approx(0.2) and data.body("ball").xpos[2] < 1
         data.qpos[0] = 0.7

@@ -131,6 +131,7 @@ void Simulator::call(const std::function<void()>& f, Wake wake) {
     lock.unlock();
     turn.take();
   }
+  MujocoWarningCapture warnings;  // as on the sim thread
   f();
   step_count_.store(loop_.stepper().step_count(), std::memory_order_relaxed);
   if (wake == Wake::kYes) this->wake();
