@@ -16,7 +16,7 @@ from e2e.support import PROGRAM, ROOT
 SECONDS = 120  # as a hang counts
 SCENE = ROOT / "examples" / "demo.toml"
 # Below about 120 MB the system's loader cannot map the program's libraries.
-LIMITS = range(140, 1200, 4) if os.environ.get("GLOAM_TEST_FULL") else (180, 267, 330, 470, 560, 680, 800)  # [MB]
+LIMITS = range(140, 1200, 4) if os.environ.get("GLOAM_TEST_FULL") else (180, 267, 400, 560, 720)  # [MB]
 SMALL = ["--resolution", "32x24", "--spp", "1"]
 
 
