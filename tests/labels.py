@@ -21,6 +21,7 @@ SLOW = [
     "MeshParts.*",
     "MjcfSpec.EveryAttributeIsReadAndEveryFieldIsMirrored",
     "MjcfSpec.SettingAfterwardsIsTheSameAsWritingItInTheFile",
+    "PropsEverywhere.Stand*",
     "PropsPhysics.AllCanBeDrawn",
     "RecordedRun.TheDemoDoesNotDependOnThreadsOrRecording",
     "SoilEffectRun.HashDoesNotDependOnThreadsPaceOrWatchers",
