@@ -74,6 +74,8 @@ struct GltfMeshTable {
 };
 // gltf/meshes.cc
 GltfMeshTable read_gltf_meshes(GltfDocument* document, ModelFile* model);
+// gltf/lights.cc
+ImportedLight read_gltf_light(const JsonNode& node);
 // gltf/nodes.cc: the hierarchy, flattened into instances and lights.
 void read_gltf_nodes(GltfDocument* document, const GltfMeshTable& meshes, ModelFile* model);
 

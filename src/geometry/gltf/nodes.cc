@@ -23,27 +23,6 @@ bool is_finite(const Affine3f& X) {
   return true;
 }
 
-ImportedLight read_light(const JsonNode& node) {
-  ImportedLight out;
-  out.name = node["name"].text().substr(0, kMaxName);
-  const std::string type = node["type"].text();
-  if (type == "spot") {
-    out.type = ImportedLightType::kSpot;
-    out.inner_cone = node["spot"]["innerConeAngle"].number(0, 0, kPi / 2);
-    out.outer_cone = node["spot"]["outerConeAngle"].number(kPi / 4, 0, kPi / 2 + 1e-4f);
-    if (!(out.inner_cone < out.outer_cone))
-      node["spot"].fail("innerConeAngle must be less than outerConeAngle");
-  } else if (type == "directional") {
-    out.type = ImportedLightType::kDirectional;
-  } else if (type != "point") {
-    node["type"].fail("is none of point, spot, directional");
-  }
-  out.color = node["color"].vec3({1, 1, 1}, 0);
-  out.intensity = node["intensity"].number(1, 0);
-  out.range = node["range"].number(0, 0);
-  return out;
-}
-
 class NodeReader {
  public:
   NodeReader(GltfDocument* document, const GltfMeshTable& meshes, ModelFile* model)
@@ -51,7 +30,8 @@ class NodeReader {
 
   void read() {
     const JsonNode lights = document_->root()["extensions"]["KHR_lights_punctual"]["lights"];
-    for (size_t i = 0; i < lights.size() && ok(); ++i) lights_.push_back(read_light(lights.at(i)));
+    for (size_t i = 0; i < lights.size() && ok(); ++i)
+      lights_.push_back(read_gltf_light(lights.at(i)));
     if (!find_parents() || !refuse_cycles()) return;
     skins_ = read_gltf_skins(document_);
     std::vector<int> roots = find_roots();
@@ -196,25 +176,14 @@ class NodeReader {
     return *places_[static_cast<size_t>(node)];
   }
 
-  // Adds the part bent by the skin. Its place is the joints'; that of its node does not count.
+  // Its place is the joints'; that of its node does not count.
   void add_skinned(const JsonNode& node, const std::string& name, const GltfMeshTable::Part& part,
                    const GltfSkin& skin) {
-    TriangleMesh mesh = model_->meshes[static_cast<size_t>(part.mesh)];
-    constexpr size_t kVertexBytes = 2 * sizeof(Vec3f) + 2 * sizeof(Vec2f);
-    if (model_->meshes.size() >= document_->source().options->limits.meshes ||
-        !document_->budget().take(mesh.positions.size(), kVertexBytes))
-      return node.fail("with its skinned meshes the model unpacks to more than the limit");
     std::vector<Affine3f> X_FM;
     for (size_t i = 0; i < skin.joints.size(); ++i)
       X_FM.push_back(place_of(skin.joints[i]) * skin.X_JM[i]);
-    if (!bend_mesh(part.weights, X_FM, &mesh))
-      return node["skin"].fail(
-          fmt::format("a vertex names a joint beyond its {}", skin.joints.size()));
-    const Status sound = finish_mesh(&mesh, node.pointer(), document_->source().name, model_);
-    if (!sound.ok()) return document_->errors().add(sound.error());
-    model_->instances.push_back(
-        {name, static_cast<int>(model_->meshes.size()), part.material, Affine3f{}});
-    model_->meshes.push_back(std::move(mesh));
+    const int mesh = add_bent_mesh(document_, node, part, X_FM, model_);
+    if (mesh >= 0) model_->instances.push_back({name, mesh, part.material, Affine3f{}});
   }
 
   void add_mesh(const JsonNode& node, const std::string& name, size_t mesh, const Affine3f& X_FN) {

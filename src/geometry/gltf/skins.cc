@@ -52,6 +52,30 @@ Affine3f weighted_sum(const GltfVertexWeights& weights, size_t vertex,
   return {sum.x * scale, sum.y * scale, sum.z * scale, sum.p * scale};
 }
 
+// False where a vertex names a joint beyond them.
+bool bend_mesh(const GltfVertexWeights& weights, std::span<const Affine3f> X_FM,
+               TriangleMesh* mesh) {
+  for (size_t i = 0; i < weights.joints.size(); ++i)
+    if (weights.joints[i] >= X_FM.size()) return false;
+  float volume = 0;  // of the unit cube after it, all vertices together: below 0 = mirrored
+  for (size_t i = 0; i < mesh->positions.size(); ++i) {
+    const Affine3f X = weighted_sum(weights, i, X_FM);
+    mesh->positions[i] = transform_point(X, mesh->positions[i]);
+    const Vec3f yz = cross(X.y, X.z), zx = cross(X.z, X.x), xy = cross(X.x, X.y);
+    const float det = dot(X.x, yz);
+    volume += det < 0 ? -1.0f : 1.0f;
+    if (mesh->normals.empty()) continue;
+    const Vec3f n = mesh->normals[i];  // cofactors: the inverse transpose, up to a factor
+    const Vec3f turned = (yz * n.x + zx * n.y + xy * n.z) * (det < 0 ? -1.0f : 1.0f);
+    const float length = std::sqrt(dot(turned, turned));
+    if (length > 0 && std::isfinite(length)) mesh->normals[i] = turned / length;
+  }
+  if (volume < 0)
+    for (size_t t = 0; t + 2 < mesh->indices.size(); t += 3)
+      std::swap(mesh->indices[t + 1], mesh->indices[t + 2]);
+  return true;
+}
+
 }  // namespace
 
 std::vector<GltfSkin> read_gltf_skins(GltfDocument* document) {
@@ -93,27 +117,26 @@ GltfVertexWeights read_gltf_weights(GltfDocument* document, const JsonNode& attr
   return out;
 }
 
-bool bend_mesh(const GltfVertexWeights& weights, std::span<const Affine3f> X_FM,
-               TriangleMesh* mesh) {
-  for (size_t i = 0; i < weights.joints.size(); ++i)
-    if (weights.joints[i] >= X_FM.size()) return false;
-  float volume = 0;  // of the unit cube after it, all vertices together: below 0 = mirrored
-  for (size_t i = 0; i < mesh->positions.size(); ++i) {
-    const Affine3f X = weighted_sum(weights, i, X_FM);
-    mesh->positions[i] = transform_point(X, mesh->positions[i]);
-    const Vec3f yz = cross(X.y, X.z), zx = cross(X.z, X.x), xy = cross(X.x, X.y);
-    const float det = dot(X.x, yz);
-    volume += det < 0 ? -1.0f : 1.0f;
-    if (mesh->normals.empty()) continue;
-    const Vec3f n = mesh->normals[i];  // cofactors: the inverse transpose, up to a factor
-    const Vec3f turned = (yz * n.x + zx * n.y + xy * n.z) * (det < 0 ? -1.0f : 1.0f);
-    const float length = std::sqrt(dot(turned, turned));
-    if (length > 0 && std::isfinite(length)) mesh->normals[i] = turned / length;
+int add_bent_mesh(GltfDocument* document, const JsonNode& node, const GltfMeshTable::Part& part,
+                  std::span<const Affine3f> X_FM, ModelFile* model) {
+  TriangleMesh mesh = model->meshes[static_cast<size_t>(part.mesh)];
+  constexpr size_t kVertexBytes = 2 * sizeof(Vec3f) + 2 * sizeof(Vec2f);
+  if (model->meshes.size() >= document->source().options->limits.meshes ||
+      !document->budget().take(mesh.positions.size(), kVertexBytes)) {
+    node.fail("with its skinned meshes the model unpacks to more than the limit");
+    return -1;
   }
-  if (volume < 0)
-    for (size_t t = 0; t + 2 < mesh->indices.size(); t += 3)
-      std::swap(mesh->indices[t + 1], mesh->indices[t + 2]);
-  return true;
+  if (!bend_mesh(part.weights, X_FM, &mesh)) {
+    node["skin"].fail(fmt::format("a vertex names a joint beyond its {}", X_FM.size()));
+    return -1;
+  }
+  const Status sound = finish_mesh(&mesh, node.pointer(), document->source().name, model);
+  if (!sound.ok()) {
+    document->errors().add(sound.error());
+    return -1;
+  }
+  model->meshes.push_back(std::move(mesh));
+  return static_cast<int>(model->meshes.size()) - 1;
 }
 
 }  // namespace gloam

@@ -22,9 +22,9 @@ std::vector<GltfSkin> read_gltf_skins(GltfDocument* document);
 GltfVertexWeights read_gltf_weights(GltfDocument* document, const JsonNode& attributes,
                                     size_t count);
 
-/// The mesh, each vertex moved by the weighted sum of `X_FM`, the joints' matrices in the file's
-/// frame. False where a vertex names a joint beyond them.
-bool bend_mesh(const GltfVertexWeights& weights, std::span<const Affine3f> X_FM,
-               TriangleMesh* mesh);
+/// Adds the part's mesh with each vertex moved by the weighted sum of `X_FM`, the joints' matrices
+/// in the file's frame. Its index; -1 after an error of `node`: a joint that is not there, a limit.
+int add_bent_mesh(GltfDocument* document, const JsonNode& node, const GltfMeshTable::Part& part,
+                  std::span<const Affine3f> X_FM, ModelFile* model);
 
 }  // namespace gloam

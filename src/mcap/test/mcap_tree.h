@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "mcap/compression.h"
@@ -122,11 +121,10 @@ class McapTreeWriter {
     if (index.start_time > index.end_time) index.start_time = 0;
     statistics_.end_time = std::max(statistics_.end_time, index.end_time);
     index.compression = chunk.compression == "zstd" ? "zstd" : "";
-    if (index.compression.empty() ||
-        !ZstdCompressor(1).append(plain, 2 * plain.size() + 1024, &packed)) {
-      index.compression.clear();
+    if (index.compression.empty())
       packed = plain;
-    }
+    else if (!ZstdCompressor(1).append(plain, 2 * plain.size() + 1024, &packed))
+      return;
     index.offset = out_.size();
     {
       McapRecordScope scope(&out_, McapOp::kChunk);
