@@ -16,7 +16,7 @@ class XmlMutator {
   explicit XmlMutator(uint64_t seed) : random_(seed) {}
 
   void mutate(pugi::xml_document* document) {
-    for (uint32_t times = 1 + random_.draw(4); times > 0; --times) {
+    for (uint32_t times = 1 + random_.draw(3); times > 0; --times) {
       nodes_.clear();
       collect(document->document_element());
       if (nodes_.empty()) return;
@@ -51,10 +51,11 @@ class XmlMutator {
         if (!is_top) node.parent().remove_child(node);
         break;
       case 1:
-        if (!is_top) node.parent().insert_copy_after(node, node);
+        if (!is_top) node.parent().insert_copy_after(node, node).remove_attribute("name");
         break;
       case 2:  // into another element
-        if (!is_top && nodes_.size() < kMostNodes) other.parent().insert_copy_after(node, other);
+        if (!is_top && other != nodes_[0] && nodes_.size() < kMostNodes)
+          other.parent().insert_copy_after(node, other).remove_attribute("name");
         break;
       case 3:
         if (!is_top) node.set_name(other.name());
@@ -66,7 +67,8 @@ class XmlMutator {
         if (others && !node.attribute(others.name())) node.append_copy(others);
         break;
       case 6:
-        if (attribute && others) attribute.set_value(others.value());
+        if (attribute && other.attribute(attribute.name()))
+          attribute.set_value(other.attribute(attribute.name()).value());
         break;
       default:
         if (attribute) attribute.set_value(value(attribute.value()).c_str());
@@ -83,8 +85,8 @@ class XmlMutator {
     for (std::string word; in >> word;) words.push_back(word);
     if (words.empty()) return "1";
     std::string& word = words[random_.draw(words.size())];
-    const bool is_number = word.find_first_of("0123456789") != std::string::npos;
-    switch (random_.draw(5)) {
+    const bool is_number = std::string_view("0123456789+-.").find(word[0]) < 13;
+    switch (random_.draw(16)) {
       case 0:
         words.pop_back();
         break;
@@ -92,7 +94,11 @@ class XmlMutator {
         words.push_back(words.back());
         break;
       default:
-        word = is_number ? kNumbers[random_.draw(std::size(kNumbers))] : random_.mutate(word);
+        // Names and keywords seldom change: unknown ones end at the parser.
+        if (is_number)
+          word = kNumbers[random_.draw(std::size(kNumbers))];
+        else if (random_.draw(4) == 0)
+          word = random_.mutate(word);
     }
     std::string out;
     for (const std::string& w : words) out += (out.empty() ? "" : " ") + w;
