@@ -109,11 +109,11 @@ class PlaceWriter {
 
   void add_material(const Look& look) {
     const std::string& written = looks_[look.name] = free_look_name(look.name, spec_);
-    mjsMaterial* material = mjs_addMaterial(spec_, nullptr);
+    mjsMaterial* material = edit(mjs_addMaterial, spec_, own_defaults());
     name(material->element, written);
     if (!look.picture.empty()) {
       const Image8& image = look.picture.image();
-      mjsTexture* texture = mjs_addTexture(spec_, nullptr);
+      mjsTexture* texture = edit(mjs_addTexture, spec_, own_defaults());
       const std::string texture_name = set_free_name(texture->element, written);
       texture->type = mjTEXTURE_2D;
       texture->colorspace = mjCOLORSPACE_SRGB;
@@ -149,7 +149,7 @@ class PlaceWriter {
   }
 
   std::string add_mesh(const std::string& mesh_name, const TriangleMesh& from) {
-    mjsMesh* mesh = mjs_addMesh(spec_, nullptr);
+    mjsMesh* mesh = edit(mjs_addMesh, spec_, own_defaults());
     std::string written = set_free_name(mesh->element, mesh_name);
     mesh->inertia = mjMESH_INERTIA_SHELL;  // a visual has no mass, and may be open
     const auto count = static_cast<int>(from.positions.size());
@@ -196,7 +196,7 @@ class PlaceWriter {
   // Stands at `initial` in the reference pose, and counts from where the joint is at zero.
   void add_joint(const PropJoint& from, const std::string& body_name, const Vec3& p_P,
                  mjsBody* body) {
-    mjsJoint* joint = edit(mjs_addJoint, body, nullptr);
+    mjsJoint* joint = edit(mjs_addJoint, body, own_defaults());
     name(joint->element, body_name);
     joint->type = from.slides ? mjJNT_SLIDE : mjJNT_HINGE;
     const double axis[3] = {from.axis.x, from.axis.y, from.axis.z};
@@ -223,7 +223,7 @@ class PlaceWriter {
                    mjsBody* body) {
     const std::vector<PropVisual>& visuals = place_.prop(placement.prop).parts[part].visuals;
     for (size_t v = 0; v < visuals.size(); ++v) {
-      mjsGeom* geom = mjs_addGeom(body, nullptr);
+      mjsGeom* geom = edit(mjs_addGeom, body, own_defaults());
       set_free_name(geom->element, body_name + "/" + visuals[v].name);
       show(geom, mesh_of(placement.prop, part, v), visuals[v].material);
     }
@@ -244,7 +244,7 @@ class PlaceWriter {
     const std::vector<PropVisual>& visuals = place_.prop(scatter.prop).body().visuals;
     for (const Pose& X_WP : scatter.poses)
       for (size_t v = 0; v < visuals.size(); ++v) {
-        mjsGeom* geom = edit(mjs_addGeom, body, nullptr);
+        mjsGeom* geom = edit(mjs_addGeom, body, own_defaults());
         show(geom, mesh_of(scatter.prop, 0, v), visuals[v].material);
         write_pose(X_WP, geom->pos, geom->quat);
       }
@@ -255,7 +255,7 @@ class PlaceWriter {
     std::string& known = hulls_[{prop, part, number}];
     if (!known.empty()) return known;
     known = fmt::format("{}.{}/{}.hull_{}", place_.prop(prop).label, prop, part, number + 1);
-    mjsMesh* mesh = mjs_addMesh(spec_, nullptr);
+    mjsMesh* mesh = edit(mjs_addMesh, spec_, own_defaults());
     known = set_free_name(mesh->element, known);
     mesh->inertia = mjMESH_INERTIA_CONVEX;
     edit(mjs_setFloat, mesh->uservert, &hull.positions[0].x,
@@ -272,7 +272,8 @@ class PlaceWriter {
     for (const PropCollider& c : part.colliders) volume += volume_of(c);
     int number = 0;
     for (const PropCollider& c : part.colliders) {
-      mjsGeom* geom = add_collider_geom(body, fmt::format("{}/collider_{}", body_name, ++number));
+      mjsGeom* geom = add_collider_geom(body, fmt::format("{}/collider_{}", body_name, ++number),
+                                        own_defaults());
       geom->type = type_of(c.shape);
       const double size[3] = {c.size.x, c.size.y, c.size.z};
       if (c.shape == ColliderShape::kHull)

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 
 namespace gloam {
 
@@ -12,6 +13,14 @@ std::string set_free_name(mjsElement* element, const std::string& text) {
   for (int n = 2; mjs_setName(element, name.c_str()) != 0; ++n)
     name = fmt::format("{}_{}", text, n);
   return name;
+}
+
+const mjsDefault* own_defaults() {
+  struct Deleter {
+    void operator()(mjSpec* spec) const { mj_deleteSpec(spec); }
+  };
+  static const std::unique_ptr<mjSpec, Deleter> spec(edit(mj_makeSpec));
+  return mjs_getSpecDefault(spec.get());
 }
 
 void write_pose(const Pose& X, double* pos, double* quat) {
@@ -31,8 +40,8 @@ void write_friction(const std::optional<Vec3>& friction, mjsGeom* geom) {
   std::copy(numbers, numbers + 3, geom->friction);
 }
 
-mjsGeom* add_collider_geom(mjsBody* body, const std::string& name) {
-  mjsGeom* geom = mjs_addGeom(body, nullptr);
+mjsGeom* add_collider_geom(mjsBody* body, const std::string& name, const mjsDefault* defaults) {
+  mjsGeom* geom = edit(mjs_addGeom, body, defaults);
   set_free_name(geom->element, name);
   geom->group = kColliderGroup;
   constexpr float kBlue[4] = {0.3f, 0.6f, 0.9f, 0.3f};

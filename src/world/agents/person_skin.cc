@@ -274,7 +274,7 @@ class SkinWriter {
 
  private:
   void add_material(const std::string& name, const Color& color, float roughness) {
-    mjsMaterial* material = edit(mjs_addMaterial, spec_, nullptr);
+    mjsMaterial* material = edit(mjs_addMaterial, spec_, own_defaults());
     edit(mjs_setName, material->element, name.c_str());
     for (size_t i = 0; i < 3; ++i) material->rgba[i] = color[i];
     material->roughness = roughness;

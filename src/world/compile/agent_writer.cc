@@ -84,9 +84,9 @@ class AgentWriter {
   mjsGeom* add_geom(int part, mjtGeom type) {
     mjsGeom* geom = add_collider_geom(
         bodies_[static_cast<size_t>(part)],
-        fmt::format("{}/{}_{}", agent_.name, part_name(agent_.kind, part), ++geoms_));
+        fmt::format("{}/{}_{}", agent_.name, part_name(agent_.kind, part), ++geoms_),
+        own_defaults());
     geom->type = type;
-    geom->contype = geom->conaffinity = 1;  // whatever the environment's defaults are
     return geom;
   }
 

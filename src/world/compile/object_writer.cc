@@ -77,7 +77,8 @@ class ObjectWriter {
   }
 
   void add_collider(const MeshCollider& c, int number, double mass, mjsBody* body) {
-    mjsGeom* geom = add_collider_geom(body, fmt::format("{}/collider_{}", o_.name, number));
+    mjsGeom* geom =
+        add_collider_geom(body, fmt::format("{}/collider_{}", o_.name, number), nullptr);
     if (c.type == MeshColliderType::kHull) {
       const std::string mesh = add_mesh(fmt::format("{}/hull_{}", o_.name, number), c.hull);
       geom->type = mjGEOM_MESH;
@@ -95,7 +96,7 @@ class ObjectWriter {
   }
 
   std::string add_mesh(const std::string& mesh_name, const TriangleMesh& hull) {
-    mjsMesh* mesh = mjs_addMesh(spec_, nullptr);
+    mjsMesh* mesh = edit(mjs_addMesh, spec_, own_defaults());
     std::string written = set_free_name(mesh->element, mesh_name);
     mesh->inertia = mjMESH_INERTIA_SHELL;  // small hulls have too little volume for MuJoCo
     edit(mjs_setFloat, mesh->uservert, &hull.positions[0].x,

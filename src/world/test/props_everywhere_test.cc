@@ -144,6 +144,39 @@ TEST_F(PropsEverywhere, KeepTheirLooksBesideOthersOfTheSameNames) {
   }
 }
 
+// An environment's <default> is for its own elements.
+TEST_F(PropsEverywhere, AreThemselvesWhateverTheEnvironmentsDefaults) {
+  folder_.write("place.xml",
+                "<mujoco><default><geom type='mesh' mesh='m' contype='0' conaffinity='0' "
+                "material='w' solref='.1 3' margin='.5'/><mesh scale='.001 .001 .001'/>"
+                "<joint stiffness='70' armature='3'/><material emission='1' rgba='1 0 0 1'/>"
+                "<texture type='cube'/></default><asset><material name='w'/><mesh name='m' "
+                "vertex='0 0 0 1000 0 0 0 1000 0 0 0 1000'/></asset><worldbody><geom/></worldbody>"
+                "</mujoco>");
+  const std::string props =
+      "[[prop]]\nname = 'p'\nkind = 'wardrobe'\n[[prop]]\nname = 'q'\nkind = 'armchair'\n"
+      "position = [3, 0, 0]\n";
+  const Result<World> alone = compile(props);
+  const Result<World> world = compile("[environment]\nfile = 'place.xml'\n" + props);
+  ASSERT_TRUE(alone.ok()) << alone.error().to_string();
+  ASSERT_TRUE(world.ok()) << world.error().to_string();
+  const mjModel &a = *alone->compiled()->model, &b = *world->compiled()->model;
+  int count = 0;
+  for (int i = 0; i < b.ngeom; ++i) {
+    const std::string name = name_of(b, mjOBJ_GEOM, i);
+    if (!name.starts_with("p/") && !name.starts_with("q/")) continue;
+    const int k = mj_name2id(&a, mjOBJ_GEOM, name.c_str());
+    ASSERT_GE(k, 0) << name;
+    EXPECT_EQ(a.geom_type[k], b.geom_type[i]) << name;
+    EXPECT_EQ(a.geom_contype[k], b.geom_contype[i]) << name;
+    EXPECT_EQ(a.geom_margin[k], b.geom_margin[i]) << name;
+    EXPECT_FLOAT_EQ(static_cast<float>(a.geom_rbound[k]), static_cast<float>(b.geom_rbound[i]));
+    ++count;
+  }
+  EXPECT_GT(count, 10);
+  for (int i = 0; i < b.njnt; ++i) EXPECT_EQ(b.jnt_stiffness[i], 0);
+}
+
 TEST_F(PropsEverywhere, RefuseABodyOrJointWhoseNameIsTaken) {
   folder_.write("place.xml",
                 "<mujoco><worldbody><body name='a'><joint name='ball'/><geom size='.1'/></body>"
