@@ -4,7 +4,7 @@
 
 #include <utility>
 
-#include "base/foreign_format.h"
+#include "base/formats/foreign_format.h"
 #include "base/memory.h"
 #include "mcap/mcap_decode.h"
 

@@ -8,7 +8,7 @@
 #include <set>
 #include <utility>
 
-#include "base/foreign_format.h"
+#include "base/formats/foreign_format.h"
 #include "mcap/log_sink.h"
 #include "mcap/mcap_catalog.h"
 #include "mcap/mcap_decode.h"

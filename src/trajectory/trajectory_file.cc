@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "base/files.h"
-#include "base/foreign_format.h"
+#include "base/formats/foreign_format.h"
 #include "base/text.h"
 #include "trajectory/rigid_pose.h"
 

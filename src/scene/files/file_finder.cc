@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "base/files.h"
-#include "base/foreign_format.h"
+#include "base/formats/foreign_format.h"
 #include "base/plain_text.h"
 #include "base/text.h"
 

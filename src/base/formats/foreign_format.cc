@@ -1,4 +1,4 @@
-#include "base/foreign_format.h"
+#include "base/formats/foreign_format.h"
 
 #include <fmt/format.h>
 
