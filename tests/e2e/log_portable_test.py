@@ -19,6 +19,7 @@ file = "../robots/cart/cart.xml"
 [[robot]]
 name = "arm"
 file = "../robots/arm_description/urdf/arm.urdf"
+position = [0, 4, 0.5]
 [[object]]
 name = "crate"
 file = "{meshes}/crate.obj"
@@ -28,7 +29,7 @@ name = "sign"
 file = "sign/sign.gltf"
 position = [3, 1, 1]
 [[material]]
-name = "painted"
+name = "crate"
 bump = "pictures/bump.png"
 [[randomize]]
 option = "sky.file"
@@ -128,23 +129,22 @@ class Portable(ProgramTest):
 
     def all_bytes(self, log):
         """The log's bytes, and those of its chunks as they were before they were compressed."""
-        from mcap.reader import make_reader
-        from mcap.stream_reader import StreamReader, get_chunk_data_stream
+        import zstandard
         from mcap.records import Chunk
+        from mcap.stream_reader import StreamReader
         data = log.read_bytes()
         parts = [data]
         for record in StreamReader(io.BytesIO(data), emit_chunks=True).records:
             if isinstance(record, Chunk):
-                stream, _ = get_chunk_data_stream(record)
-                parts.append(stream.read())
+                self.assertEqual(record.compression, "zstd")
+                parts.append(zstandard.ZstdDecompressor().decompress(record.data, max_output_size=record.uncompressed_size))
         self.assertGreater(len(parts), 1)
-        self.assertIsNotNone(make_reader(io.BytesIO(data)).get_summary())
         return b"\n".join(parts)
 
     def assert_tells_nothing(self, log):
         data = self.all_bytes(log)
         for word in (str(self.folder), self.folder.name, str(self.home), "jane_doe", os.path.expanduser("~") + "/", "/tmp/"):
-            self.assertNotIn(word.encode(), data)
+            self.assertFalse(word.encode() in data, word)
 
     def test_a_log_beside_its_project_is_replayed_where_both_were_moved(self):
         log = self.record(self.write_project("project"), log="project/logs/run.mcap")
