@@ -147,6 +147,12 @@ class Zmq(unittest.TestCase):
             self.assertEqual(sim.record_stop(), file)
         said = subprocess.run([str(PROGRAM), "replay", file, "--verify"], text=True, capture_output=True, check=True).stdout
         self.assertRegex(said, r"^0 of \d+ steps differ")
+        from mcap_ros2.reader import read_ros2_messages
+        controls = list(read_ros2_messages(str(file), topics=["/arm/controls"]))
+        self.assertEqual([m.ros_msg.data[0] for m in controls[:20]], [0.1 * (-1) ** i for i in range(20)])
+        times = [m.log_time_ns for m in controls[:20]]
+        self.assertEqual({b - a for a, b in zip(times, times[1:])}, {20_000_000}, "ten steps of 2 ms")
+        self.assertEqual(controls[-1].ros_msg.data[0], 0.02 * 19)
 
     def test_changes_of_the_scene_keep_no_world_in_memory(self):
         """Each World holds a height field of 8 MB; 200 changes in full, else 30."""
