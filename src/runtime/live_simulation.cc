@@ -331,14 +331,14 @@ Result<std::vector<TopicInfo>> LiveSimulation::topics() const {
 
 Result<std::unique_ptr<TopicStream>> LiveSimulation::open_topics(const TopicRequest& request,
                                                                  TopicCallback on_message) {
-  return open_topic_batches(request, 1, std::move(on_message));
+  GLOAM_TRY(auto feed, open_topic_batches(request, 1, std::move(on_message)));
+  return std::unique_ptr<TopicStream>(std::move(feed));
 }
 
-Result<std::unique_ptr<TopicStream>> LiveSimulation::open_topic_batches(const TopicRequest& request,
-                                                                        int batch,
-                                                                        TopicCallback on_message) {
-  GLOAM_TRY(auto feed, TopicFeed::open(*this, topics_, request, std::move(on_message), batch));
-  return std::unique_ptr<TopicStream>(std::move(feed));
+Result<std::unique_ptr<TopicFeed>> LiveSimulation::open_topic_batches(const TopicRequest& request,
+                                                                      int batch,
+                                                                      TopicCallback on_message) {
+  return TopicFeed::open(*this, topics_, request, std::move(on_message), batch);
 }
 
 Result<std::vector<Command>> LiveSimulation::decode_input(std::string_view topic,

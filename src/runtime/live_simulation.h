@@ -21,6 +21,8 @@
 
 namespace gloam {
 
+class TopicFeed;
+
 /// Makes the controllers of all robots of a World, as their options say.
 Result<std::vector<RobotController>> make_controllers(
     const std::shared_ptr<const CompiledWorld>& world);
@@ -98,8 +100,8 @@ class LiveSimulation final : public Simulation {
   }
   Simulator& simulator() { return *simulator_; }
   /// The same as open_topics() for a reader in no hurry: SubscriptionOptions::batch.
-  Result<std::unique_ptr<TopicStream>> open_topic_batches(const TopicRequest& request, int batch,
-                                                          TopicCallback on_message);
+  Result<std::unique_ptr<TopicFeed>> open_topic_batches(const TopicRequest& request, int batch,
+                                                        TopicCallback on_message);
   Result<std::shared_ptr<SharedRenderer>> renderer() { return renderers_.of(simulator_->world()); }
   Result<std::unique_ptr<LiveCamera>> open_live_camera(const CameraRequest& request,
                                                        FrameCallback on_frame);

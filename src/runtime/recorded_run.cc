@@ -198,22 +198,19 @@ RunInfo run_info(const World& world, const RunRequest& request, bool has_media, 
   return info;
 }
 
-using Cameras = std::vector<std::unique_ptr<LiveCamera>>;
-using Lidars = std::vector<std::unique_ptr<LiveLidar>>;
-
 bool is_interrupt(const Status& status) {
   return !status.ok() && status.error().kind == ErrorKind::kInterrupted;
 }
 
 // Waits until the cameras have made their last pictures. `goes_on` is asked meanwhile; its Error
 // ends the pictures, too.
-Status drain_cameras(const Cameras& cameras, const std::function<Status()>& goes_on) {
+Status drain_cameras(const RunProgress::Cameras& cameras, const std::function<Status()>& goes_on) {
   constexpr std::chrono::milliseconds kLook{20};
-  for (const auto& camera : cameras) {
+  for (LiveCamera* const camera : cameras) {
     while (!camera->drain_for(kLook)) {
       const Status status = goes_on();
       if (status.ok()) continue;
-      for (const auto& one : cameras) one->abandon();
+      for (LiveCamera* const one : cameras) one->abandon();
       return status;
     }
   }
@@ -288,9 +285,9 @@ Result<RunReport> record_motion(const World& world, const RunRequest& request,
     state.emplace(*world.compiled(), world.compiled()->serial);
   std::unique_ptr<Recorder> recorder;
   SensingMetrics sensing;
-  Cameras cameras;
+  std::vector<std::unique_ptr<LiveCamera>> cameras;
   std::unique_ptr<LiveSensors> sensors;
-  Lidars lidars;
+  std::vector<std::unique_ptr<LiveLidar>> lidars;
   std::unique_ptr<LogRecorder> log;
   double prepared = 0;
   if (!request.out.empty()) {
@@ -381,20 +378,23 @@ Result<RunReport> record_motion(const World& world, const RunRequest& request,
     if (log != nullptr) GLOAM_TRY_STATUS(log->status());
     return recorder != nullptr ? recorder->status() : Status();
   };
-  RunProgress done(simulator, first_step, steps, cameras);
+  RunProgress::Cameras drawing;
+  for (const auto& camera : cameras) drawing.push_back(camera.get());
+  if (log != nullptr) drawing.insert(drawing.end(), log->cameras().begin(), log->cameras().end());
+  RunProgress done(simulator, first_step, steps, drawing);
   const ProgressCallback show_done =
       progress ? [&](const Progress& now) { return progress(done.of(now)); } : ProgressCallback();
-  report.status = run_to_step(simulator, steps, cameras.empty() ? "simulating" : "rendering",
+  report.status = run_to_step(simulator, steps, drawing.empty() ? "simulating" : "rendering",
                               seconds_since(start), show_done, recording);
   const Snapshot last = simulator.latest();
   const double simulated = seconds_since(start);
   if (is_interrupt(report.status)) {  // at once: nobody waits for pictures any more
-    for (auto& camera : cameras) camera->abandon();
+    for (LiveCamera* const camera : drawing) camera->abandon();
     for (auto& lidar : lidars) lidar->abandon();
     if (sensors != nullptr) sensors->abandon();
   }
   simulator.stop();  // ends the queues; what they hold is still delivered
-  const Status drawn = drain_cameras(cameras, [&]() -> Status {
+  const Status drawn = drain_cameras(drawing, [&]() -> Status {
     GLOAM_TRY_STATUS(recording());
     if (!show_done || show_done({"rendering", 1, seconds_since(start)})) return {};
     return Error{ErrorKind::kInterrupted, "interrupted"};

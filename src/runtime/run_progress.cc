@@ -9,7 +9,7 @@ double RunProgress::share() const {
   const double simulated =
       std::clamp(static_cast<double>(simulator_.step_count() - first_) / steps, 0.0, 1.0);
   double slowest = simulated;
-  for (const auto& camera : cameras_) {
+  for (const LiveCamera* const camera : cameras_) {
     if (camera->is_idle()) continue;  // it waits for the simulation
     const double length = steps * simulator_.timestep().value();
     const double pictures = length * camera->rate().value() + 1;

@@ -14,7 +14,7 @@ namespace gloam {
 /// most of the time. So a run has got as far as its slowest camera has.
 class RunProgress {
  public:
-  using Cameras = std::vector<std::unique_ptr<LiveCamera>>;
+  using Cameras = std::vector<LiveCamera*>;
   /// From step `first` to step `last`; the cameras outlive it.
   RunProgress(const Simulator& simulator, int64_t first, int64_t last, const Cameras& cameras)
       : simulator_(simulator), first_(first), last_(last), cameras_(cameras) {}

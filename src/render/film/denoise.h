@@ -3,6 +3,7 @@
 // filter of our own. One interface; which one is a run-time choice.
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -33,6 +34,9 @@ class Denoiser {
   /// spread. The picture keeps the film's light.
   virtual Status denoise(const Film& film, std::vector<Vec3f>* out) = 0;
   virtual const char* name() const = 0;
+  /// Called during denoise(), on any thread; once it returns false, denoise() gives up and returns
+  /// an Error. Denoisers that take less than a second may ignore it.
+  virtual void set_may_continue(std::function<bool()> /*may_continue*/) {}
 };
 
 /// Open Image Denoise 2.x, loaded at run time from $GLOAM_OIDN (its library or folder), Gloam's

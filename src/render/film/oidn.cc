@@ -52,6 +52,7 @@ struct OidnApi {
   void (*set_int)(OidnFilter, const char* name, int value) = nullptr;
   void (*commit_filter)(OidnFilter) = nullptr;
   void (*execute_filter)(OidnFilter) = nullptr;
+  void (*set_monitor)(OidnFilter, bool (*progress)(void* user, double done), void* user) = nullptr;
   void (*release_filter)(OidnFilter) = nullptr;
 };
 
@@ -80,6 +81,7 @@ bool load_functions(void* library, OidnApi* api) {
   load(api->set_int, "oidnSetFilterInt");
   load(api->commit_filter, "oidnCommitFilter");
   load(api->execute_filter, "oidnExecuteFilter");
+  load(api->set_monitor, "oidnSetFilterProgressMonitorFunction");
   load(api->release_filter, "oidnReleaseFilter");
   return complete;
 }
@@ -141,6 +143,12 @@ class Filter {
   Filter& operator=(const Filter&) = delete;
 
   void set(const char* name, bool value) { api_.set_bool(filter_, name, value); }
+  /// `may_continue` outlives the runs.
+  void watch(std::function<bool()>* may_continue) {
+    api_.set_monitor(
+        filter_, [](void* user, double) { return (*static_cast<std::function<bool()>*>(user))(); },
+        may_continue);
+  }
   /// A plane that does not have the film's size is left out.
   void set_input(const char* name, const std::vector<Vec3f>& plane, const Film& film) {
     if (plane.size() != film.pixel_count()) {
@@ -221,6 +229,12 @@ class OidnDenoiser : public Denoiser {
     return {};
   }
 
+  void set_may_continue(std::function<bool()> may_continue) override {
+    may_continue_ = std::move(may_continue);
+    for (auto* filter : {&color_filter_, &albedo_filter_, &normal_filter_})
+      if (*filter) (*filter)->watch(&may_continue_);
+  }
+
   const char* name() const override {
     return device_.kind == DenoiseDevice::kCuda ? "Open Image Denoise, on the card"
                                                 : "Open Image Denoise";
@@ -244,6 +258,7 @@ class OidnDenoiser : public Denoiser {
 
   OidnApi api_;
   Device device_;
+  std::function<bool()> may_continue_;
   std::optional<Filter> color_filter_, albedo_filter_, normal_filter_;
   std::vector<Vec3f> color_, light_, filtered_;
   Film wide_;  // with its border

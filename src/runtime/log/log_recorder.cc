@@ -242,6 +242,8 @@ Status LogRecorder::status() const {
 }
 
 Status LogRecorder::finish(const Snapshot& last) {
+  if (!request_.required)  // nobody waits for a picture that a live run has begun
+    for (LiveCamera* const camera : cameras()) camera->abandon();
   topics_.reset();
   states_.reset();
   take(last);

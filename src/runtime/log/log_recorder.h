@@ -11,6 +11,7 @@
 #include "runtime/log/input_log.h"
 #include "runtime/log/log_channels.h"
 #include "runtime/log/world_log.h"
+#include "runtime/streams/topic_feed.h"
 
 namespace gloam {
 
@@ -27,6 +28,8 @@ class LogRecorder {
   Status finish(const Snapshot& last);
   /// Messages lost because the disk was slow, real-time runs alone.
   int64_t dropped() const { return static_cast<int64_t>(channels_->queue().dropped()); }
+  /// Cameras whose pictures it writes.
+  const std::vector<LiveCamera*>& cameras() const { return topics_->cameras(); }
 
  private:
   LogRecorder(LiveSimulation& simulation, const LogRequest& request);
@@ -58,7 +61,7 @@ class LogRecorder {
   const std::shared_ptr<HookInputs> hook_inputs_ = std::make_shared<HookInputs>();
   const std::shared_ptr<ReceivedInputs> received_ = std::make_shared<ReceivedInputs>();
   std::unique_ptr<InputLog> inputs_;
-  std::unique_ptr<TopicStream> topics_;
+  std::unique_ptr<TopicFeed> topics_;
   std::unique_ptr<SnapshotStream> states_;
 };
 

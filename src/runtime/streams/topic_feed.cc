@@ -153,7 +153,7 @@ Status TopicFeed::open_camera(LiveSimulation& simulation, const std::string& cam
       request.rate = outlet.topic->info.rate;
   }
   auto shared = std::make_shared<Outlets>(std::move(outlets));
-  GLOAM_TRY(auto stream, simulation.open_camera(
+  GLOAM_TRY(auto stream, simulation.open_live_camera(
                              request, [this, shared](std::shared_ptr<const CameraFrame> frame) {
                                for (Outlet& outlet : *shared) {
                                  const TopicInfo& info = outlet.topic->info;
@@ -161,6 +161,7 @@ Status TopicFeed::open_camera(LiveSimulation& simulation, const std::string& cam
                                       {info, -1, frame->step, frame->time, frame->delivery, {}});
                                }
                              }));
+  cameras_.push_back(stream.get());
   streams_.push_back(std::move(stream));
   return {};
 }

@@ -14,6 +14,7 @@
 
 namespace gloam {
 
+class LiveCamera;
 class LiveSimulation;
 
 class TopicFeed final : public TopicStream {
@@ -28,6 +29,8 @@ class TopicFeed final : public TopicStream {
   int64_t complete_at(int64_t) const override { return -1; }
   void flush() override;
   Status status() const override;
+  /// Those that make its pictures; they live as long as this.
+  const std::vector<LiveCamera*>& cameras() const { return cameras_; }
 
  private:
   TopicFeed(TopicTables& tables, const TopicRequest& request, TopicCallback on_message, int batch)
@@ -97,6 +100,7 @@ class TopicFeed final : public TopicStream {
   std::vector<std::unique_ptr<Gathering>> gatherings_;
   mutable std::mutex mutex_;  // guards the first fault
   Status fault_;
+  std::vector<LiveCamera*> cameras_;              // of streams_
   std::vector<std::unique_ptr<Stream>> streams_;  // last: they use the others
 };
 

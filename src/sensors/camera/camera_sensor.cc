@@ -190,6 +190,12 @@ Result<std::unique_ptr<CameraSensor>> CameraSensor::create(const RenderDescripti
   return sensor;
 }
 
+void CameraSensor::set_progress(std::function<bool(double done)> progress) {
+  settings_.progress = progress;
+  if (denoiser_ != nullptr)
+    denoiser_->set_may_continue([progress = std::move(progress)] { return progress(1); });
+}
+
 PictureMemory CameraSensor::memory() const {
   const auto pixels =
       static_cast<uint64_t>(intrinsics_.width) * static_cast<uint64_t>(intrinsics_.height);
@@ -244,6 +250,7 @@ std::shared_ptr<const CameraFrame> CameraSensor::capture(Renderer& renderer, Ren
   if (!stats_.finished) return nullptr;
   auto frame = std::make_shared<CameraFrame>();
   convert(now, frame_index, view, light, frame.get());
+  if (settings_.progress && !settings_.progress(1)) return nullptr;  // its denoising was ended
   return frame;
 }
 

@@ -78,10 +78,9 @@ class CameraSensor {
   Status set_temperatures(const std::vector<TemperatureOptions>& temperatures) {
     return models_->set_temperatures(temperatures);
   }
-  /// Progress callback for the rendering of each picture, see RenderSettings::progress.
-  void set_progress(std::function<bool(double done)> progress) {
-    settings_.progress = std::move(progress);
-  }
+  /// Progress callback for the rendering of each picture, see RenderSettings::progress. It may also
+  /// end the denoising, which is then no part of the picture.
+  void set_progress(std::function<bool(double done)> progress);
   /// Wall time spent waiting for turns at the renderer, over all pictures [s].
   double waited() const { return use_.waited; }
   /// Statistics of the last picture.
