@@ -20,9 +20,9 @@ namespace {
 
 using testing::HasSubstr;
 namespace fs = std::filesystem;
-constexpr double kStep = 0.002;  // [s]
+constexpr double kBoundsStep = 0.002;  // [s]
 
-gloam_msgs::State state(int64_t run, int64_t step, double time) {
+gloam_msgs::State state_at(int64_t run, int64_t step, double time) {
   gloam_msgs::State out;
   out.run = run;
   out.step = step;
@@ -33,42 +33,48 @@ gloam_msgs::State state(int64_t run, int64_t step, double time) {
 TEST(StateOrders, TakeStatesAsRunsMakeThem) {
   StateOrder order("log");
   for (const int64_t step : {0, 1, 5, 1000, 2'000'000})
-    EXPECT_TRUE(order.check(state(0, step, static_cast<double>(step) * kStep), kStep, false).ok());
-  EXPECT_TRUE(order.check(state(1, 0, 12.5), kStep, false).ok()) << "a keyframe sets the clock";
-  EXPECT_TRUE(order.check(state(1, 10, 12.5 + 10 * kStep), kStep, false).ok());
-  EXPECT_TRUE(order.check(state(4, 700, 700 * kStep), kStep, false).ok()) << "from a checkpoint";
-  EXPECT_TRUE(order.check(state(4, 701, -3), kStep, true).ok()) << "a program sets the time";
+    EXPECT_TRUE(
+        order.check(state_at(0, step, static_cast<double>(step) * kBoundsStep), kBoundsStep, false)
+            .ok());
+  EXPECT_TRUE(order.check(state_at(1, 0, 12.5), kBoundsStep, false).ok())
+      << "a keyframe sets the clock";
+  EXPECT_TRUE(order.check(state_at(1, 10, 12.5 + 10 * kBoundsStep), kBoundsStep, false).ok());
+  EXPECT_TRUE(order.check(state_at(4, 700, 700 * kBoundsStep), kBoundsStep, false).ok())
+      << "from a checkpoint";
+  EXPECT_TRUE(order.check(state_at(4, 701, -3), kBoundsStep, true).ok())
+      << "a program sets the time";
 }
 
 TEST(StateOrders, FindNumbersThatNoRunMakes) {
   const auto refused = [](const gloam_msgs::State& next) {
     StateOrder order("log");
-    EXPECT_TRUE(order.check(state(2, 100, 100 * kStep), kStep, false).ok());
-    const Status status = order.check(next, kStep, false);
+    EXPECT_TRUE(order.check(state_at(2, 100, 100 * kBoundsStep), kBoundsStep, false).ok());
+    const Status status = order.check(next, kBoundsStep, false);
     return status.ok() ? "taken" : status.error().message;
   };
   constexpr int64_t kFar = int64_t{1} << 40, kMost = std::numeric_limits<int64_t>::max();
-  EXPECT_THAT(refused(state(2, 101 + kFar, 101 * kStep)), HasSubstr("more than 10000000"));
-  EXPECT_THAT(refused(state(2, kFar, static_cast<double>(kFar) * kStep)), HasSubstr("more than"));
-  EXPECT_THAT(refused(state(2, 5000, 101 * kStep)), HasSubstr("do not fit"));
-  EXPECT_THAT(refused(state(2, 101, 7)), HasSubstr("do not fit"));
-  EXPECT_THAT(refused(state(2, 101, std::nan(""))), HasSubstr("do not fit"));
-  EXPECT_THAT(refused(state(2, 100, 100 * kStep)), HasSubstr("follows one at step 100"));
-  EXPECT_THAT(refused(state(2, -1, 0)), HasSubstr("follows one at step 100"));
-  EXPECT_THAT(refused(state(1, 0, 0)), HasSubstr("follows one of run 2"));
-  EXPECT_THAT(refused(state(-1, 0, 0)), HasSubstr("run -1"));
-  EXPECT_THAT(refused(state(3, kMost, 0)), HasSubstr("more than"));
-  EXPECT_THAT(refused(state(3, 1000, kStep)), HasSubstr("do not fit"));
+  EXPECT_THAT(refused(state_at(2, 101 + kFar, 101 * kBoundsStep)), HasSubstr("more than 10000000"));
+  EXPECT_THAT(refused(state_at(2, kFar, static_cast<double>(kFar) * kBoundsStep)),
+              HasSubstr("more than"));
+  EXPECT_THAT(refused(state_at(2, 5000, 101 * kBoundsStep)), HasSubstr("do not fit"));
+  EXPECT_THAT(refused(state_at(2, 101, 7)), HasSubstr("do not fit"));
+  EXPECT_THAT(refused(state_at(2, 101, std::nan(""))), HasSubstr("do not fit"));
+  EXPECT_THAT(refused(state_at(2, 100, 100 * kBoundsStep)), HasSubstr("follows one at step 100"));
+  EXPECT_THAT(refused(state_at(2, -1, 0)), HasSubstr("follows one at step 100"));
+  EXPECT_THAT(refused(state_at(1, 0, 0)), HasSubstr("follows one of run 2"));
+  EXPECT_THAT(refused(state_at(-1, 0, 0)), HasSubstr("run -1"));
+  EXPECT_THAT(refused(state_at(3, kMost, 0)), HasSubstr("more than"));
+  EXPECT_THAT(refused(state_at(3, 1000, kBoundsStep)), HasSubstr("do not fit"));
 }
 
-constexpr const char* kBall = R"(<mujoco model="ball"><option timestep="0.002"/>
+constexpr const char* kBoundsBall = R"(<mujoco model="ball"><option timestep="0.002"/>
 <worldbody><light pos="0 0 3"/><geom type="plane" size="3 3 .1"/>
 <body name="ball" pos="0 0 .5"><freejoint/><geom size=".1"/></body></worldbody></mujoco>)";
 
 class ChangedLogs : public testing::Test {
  protected:
   ChangedLogs() {
-    folder_.write("ball.xml", kBall);
+    folder_.write("ball.xml", kBoundsBall);
     folder_.write("s.toml", "[[robot]]\nname = \"b\"\nfile = \"ball.xml\"\n");
     RunRequest request;
     request.log.file = log_;

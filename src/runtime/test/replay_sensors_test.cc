@@ -16,7 +16,7 @@ using testing::HasSubstr;
 namespace fs = std::filesystem;
 
 // Contacts, a motor and an impulse: readings that no pose tells.
-constexpr const char* kMeasured = R"(<mujoco model="m"><option timestep="0.002"/>
+constexpr const char* kMeasuredModel = R"(<mujoco model="m"><option timestep="0.002"/>
 <worldbody><light pos="0 0 4"/><geom type="plane" size="5 5 .1"/>
 <body name="box" pos="0 0 .3" euler="20 30 0"><freejoint/>
   <geom type="box" size=".2 .1 .1" mass="2"/><site name="imu"/></body>
@@ -29,7 +29,7 @@ constexpr const char* kMeasured = R"(<mujoco model="m"><option timestep="0.002"/
 <jointpos name="angle" joint="swing"/><actuatorfrc name="effort" actuator="swing"/></sensor>
 </mujoco>)";
 
-constexpr const char* kScene = R"(
+constexpr const char* kMeasuredScene = R"(
 [sim]
 seed = 5
 [record]
@@ -53,7 +53,7 @@ position = [-3, -1, 1.5]
 look_at = [0, 0, 0.3]
 )";
 
-std::string text_of(const fs::path& file) {
+std::string bytes_of_file(const fs::path& file) {
   std::ifstream in(file, std::ios::binary);
   return {std::istreambuf_iterator<char>(in), {}};
 }
@@ -61,8 +61,8 @@ std::string text_of(const fs::path& file) {
 class ReplayedSensors : public testing::Test {
  protected:
   ReplayedSensors() {
-    folder_.write("m.xml", kMeasured);
-    folder_.write("s.toml", kScene);
+    folder_.write("m.xml", kMeasuredModel);
+    folder_.write("s.toml", kMeasuredScene);
     RunRequest request{.out = folder_.path() / "first"};
     request.log.file = replay_.log = folder_.path() / "run.mcap";
     request.log.topics = {"/tf"};
@@ -91,12 +91,12 @@ TEST_F(ReplayedSensors, AreTheRecordedOnesToTheBit) {
   int files = 0;
   for (const auto& entry : fs::directory_iterator(folder_.path() / "first/sensors")) {
     const fs::path again = folder_.path() / "again/sensors" / entry.path().filename();
-    EXPECT_EQ(text_of(entry.path()), text_of(again)) << again;
+    EXPECT_EQ(bytes_of_file(entry.path()), bytes_of_file(again)) << again;
     ++files;
   }
   EXPECT_EQ(files, 6);
-  EXPECT_EQ(text_of(folder_.path() / "first/state.csv"),
-            text_of(folder_.path() / "again/state.csv"));
+  EXPECT_EQ(bytes_of_file(folder_.path() / "first/state.csv"),
+            bytes_of_file(folder_.path() / "again/state.csv"));
 }
 
 // The forces are not in the poses, but what follows from positions alone is.

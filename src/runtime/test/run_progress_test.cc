@@ -12,14 +12,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kBall = R"(<mujoco model="ball"><worldbody><light pos="0 0 3"/>
+constexpr const char* kProgressBall = R"(<mujoco model="ball"><worldbody><light pos="0 0 3"/>
 <geom type="plane" size="3 3 .1"/><body pos="0 0 .5"><freejoint/><geom size=".1"/></body>
 </worldbody></mujoco>)";
 
 class ProgressOfRuns : public testing::Test {
  protected:
   ProgressOfRuns() {
-    folder_.write("ball.xml", kBall);
+    folder_.write("ball.xml", kProgressBall);
     folder_.write("s.toml",
                   "[record]\noutputs = [\"png\"]\n[render]\ntier = \"path\"\nspp = 256\ndenoise = "
                   "false\n[environment]\nfile = \"ball.xml\"\n[[camera]]\nname = \"eye\"\nposition "
