@@ -33,7 +33,8 @@ struct LogReplay {
   std::optional<uint64_t> draw_seed =
       {};  ///< seed of [[randomize]]s of overlays; empty = the run's
   /// Options to change, as set_option takes them: weather, lights, materials, sky, cameras, LiDARs,
-  /// smoke. Forces of what is changed do not act: bodies move as they did.
+  /// smoke. Bodies move as they did: an option that would move them otherwise, or that changes
+  /// nothing in a replay (controllers, goals, seeds), is an error.
   std::vector<std::pair<std::string, std::string>> settings = {};
   std::vector<std::string> outputs = {};  ///< as of set_record_outputs; empty = the scene's
   RunRequest request = {};  ///< what is recorded, and where; a duration of 0 = the whole run
