@@ -14,7 +14,7 @@ namespace {
 
 using Field = MessageSchema::Field;
 
-std::string_view trimmed(std::string_view text) {
+std::string_view without_blanks(std::string_view text) {
   constexpr std::string_view kSpaces = " \t";
   const size_t first = text.find_first_not_of(kSpaces);
   if (first == std::string_view::npos) return {};
@@ -24,7 +24,7 @@ std::string_view trimmed(std::string_view text) {
 // Elements of "[1, 2]" or "['a', \"b, c\"]".
 std::vector<std::string_view> elements_of(std::string_view list) {
   std::vector<std::string_view> elements;
-  list = trimmed(list);
+  list = without_blanks(list);
   if (!list.starts_with('[') || !list.ends_with(']')) return elements;
   list = list.substr(1, list.size() - 2);
   char quote = 0;
@@ -32,7 +32,7 @@ std::vector<std::string_view> elements_of(std::string_view list) {
   for (size_t i = 0; i <= list.size(); ++i) {
     const bool is_end = i == list.size() || (quote == 0 && list[i] == ',');
     if (is_end) {
-      if (const auto element = trimmed(list.substr(begin, i - begin)); !element.empty())
+      if (const auto element = without_blanks(list.substr(begin, i - begin)); !element.empty())
         elements.push_back(element);
       begin = i + 1;
     } else if (quote != 0) {

@@ -21,8 +21,8 @@ Result<SensorDescription> find_sensor(const std::vector<SensorDescription>& sens
                suggest_name(name, names)};
 }
 
-// Of a stream, for people.
-std::string name_of(const std::vector<std::string>& sensors) {
+// The name of a stream in reports.
+std::string stream_name(const std::vector<std::string>& sensors) {
   if (sensors.size() == 1) return fmt::format("sensor '{}'", sensors.front());
   return fmt::format("{} sensors", sensors.size());
 }
@@ -65,7 +65,7 @@ Result<std::unique_ptr<LiveSensors>> LiveSensors::open(const StreamContext& cont
   options.batch = wanted.batch;
   GLOAM_TRY(auto queue, simulator.subscribe(options));
   live->account_ =
-      context.costs.open(name_of(wanted.sensors), rate_of(options.due, simulator.timestep()));
+      context.costs.open(stream_name(wanted.sensors), rate_of(options.due, simulator.timestep()));
   live->thread_.start(
       std::move(queue),
       {.what = "a stream of sensors",

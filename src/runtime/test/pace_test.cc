@@ -14,7 +14,7 @@ namespace {
 using namespace std::chrono_literals;
 using testing::HasSubstr;
 
-constexpr int64_t kSteps = 100;  // of 2 ms
+constexpr int64_t kPaceSteps = 100;  // of 2 ms
 
 /// A camera at 100 Hz whose reader takes longer than a frame's time.
 struct SlowCamera {
@@ -46,12 +46,12 @@ TEST(Pace, SensorsWaitsForSensorsThatNobodyRequiresAndRealTimeDoesNot) {
   for (const Pace pace : {Pace::kSensors, Pace::kRealTime}) {
     auto simulation = *Simulation::create(world, {.pace = pace});
     SlowCamera camera(*simulation);
-    ASSERT_TRUE(simulation->run_until(kSteps).ok());
+    ASSERT_TRUE(simulation->run_until(kPaceSteps).ok());
     const SimulationStats stats = simulation->stats();
     if (pace == Pace::kSensors) {
       camera.stream->flush();
       EXPECT_EQ(camera.stream->dropped(), 0);
-      EXPECT_EQ(camera.frames, kSteps / 5 + 1);
+      EXPECT_EQ(camera.frames, kPaceSteps / 5 + 1);
       hash = stats.hash;
     } else {
       EXPECT_GT(camera.stream->dropped(), 0);
@@ -65,7 +65,7 @@ TEST(Pace, SensorsWaitsForNoView) {
   const TempFolder folder;
   auto simulation = *Simulation::create(flight(folder), {.pace = Pace::kSensors, .speed = 10});
   SlowCamera view(*simulation, true);
-  ASSERT_TRUE(simulation->run_until(kSteps).ok());
+  ASSERT_TRUE(simulation->run_until(kPaceSteps).ok());
   EXPECT_GT(view.stream->dropped(), 0);
 }
 
@@ -89,14 +89,14 @@ TEST(Pace, StatsTellWhatEachSensorCosts) {
   const TempFolder folder;
   auto simulation = *Simulation::create(flight(folder), {.pace = Pace::kSensors});
   SlowCamera camera(*simulation);
-  ASSERT_TRUE(simulation->run_until(kSteps).ok());
+  ASSERT_TRUE(simulation->run_until(kPaceSteps).ok());
   camera.stream->flush();
   const std::vector<SensorCost> sensors = simulation->stats().sensors;
   ASSERT_EQ(sensors.size(), 1u);
   EXPECT_EQ(sensors[0].name, "camera 'a/fixed'");
   EXPECT_EQ(sensors[0].rate, 100);
   EXPECT_NEAR(sensors[0].achieved, 100, 1e-6);
-  EXPECT_EQ(sensors[0].messages, kSteps / 5 + 1);
+  EXPECT_EQ(sensors[0].messages, kPaceSteps / 5 + 1);
   EXPECT_EQ(sensors[0].dropped, 0);
   EXPECT_GE(sensors[0].wall_ms, 20) << "its reader counts";
   const double factor = simulation->stats().realtime_factor;
