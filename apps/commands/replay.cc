@@ -97,6 +97,7 @@ int play(const ReplayCommand& command, const LogReplay& replay) {
   if (replay.request.duration > 0)
     run.duration = std::min(replay.request.duration, (*player)->end());
   run.bridges = command.live.options({});
+  run.pace = command.live.pace_of({}, Pace::kRealTime);
   return run_live(std::move(run), command.live, starting);
 }
 
