@@ -86,6 +86,20 @@ TEST_F(OperatorTest, SpeedHasLimits) {
     expect_error(op().set_speed(speed), ErrorKind::kInput, "0.001");
 }
 
+TEST_F(OperatorTest, ThePaceHasANameAndStaysWithAnotherSpeed) {
+  expect_ok(op().set_pace("sensors"));
+  EXPECT_EQ(simulation_->stats().pace, Pace::kSensors);
+  expect_ok(op().set_speed(2));
+  EXPECT_EQ(simulation_->stats().pace, Pace::kSensors);
+  expect_ok(op().set_speed({}));
+  EXPECT_EQ(simulation_->stats().pace, Pace::kFast);
+  expect_ok(op().set_pace("realtime"));
+  EXPECT_EQ(op().pace(), Pace::kRealTime);
+  EXPECT_EQ(op().speed(), 2) << "as before";
+  expect_error(op().set_pace("sensor"), ErrorKind::kUsage, "sensors");
+  expect_error(op().set_pace("lockstep"), ErrorKind::kInput, "lockstep");
+}
+
 TEST_F(OperatorTest, ListsEntitiesByWhatTheyAre) {
   EXPECT_EQ(entity("arm").kind, EntityKind::kRobot);
   EXPECT_EQ(entity("crate").kind, EntityKind::kObject);

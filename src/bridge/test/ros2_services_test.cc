@@ -425,6 +425,12 @@ TEST_F(Ros2Parameters, AreReadAndSet) {
   EXPECT_TRUE(set("speed", double_parameter(3)));
   EXPECT_EQ(get("speed").double_value, 3);
   EXPECT_FALSE(set("speed", double_parameter(-3)));
+  EXPECT_TRUE(set("pace", string_parameter("sensors")));
+  EXPECT_EQ(get("pace").string_value, "sensors");
+  EXPECT_EQ(simulation_->stats().pace, Pace::kSensors);
+  EXPECT_FALSE(set("pace", string_parameter("sensor")));
+  EXPECT_FALSE(set("pace", double_parameter(1)));
+  EXPECT_TRUE(set("pace", string_parameter("realtime")));
   EXPECT_TRUE(set("use_sim_time", bool_parameter(true)));
   EXPECT_FALSE(set("use_sim_time", bool_parameter(false)));
   EXPECT_TRUE(set("live.gravity", doubles_parameter({0, 0, -1})));

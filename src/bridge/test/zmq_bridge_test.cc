@@ -146,6 +146,9 @@ TEST_F(ZmqBridgeTest, ARunGoesOnAndPausesAndGoesBack) {
   EXPECT_EQ(client.call("step")["step"].as<int>(), 1);
   EXPECT_EQ(client.refused("seek", 1, one("time", 0.0))["kind"].text(), "usage");
   EXPECT_EQ(client.refused("pace", 1, one("speed", -1.0))["kind"].text(), "input");
+  client.call("pace", 1, one("pace", std::string("sensors")));
+  EXPECT_EQ(client.call("state")["pace"].text(), "sensors");
+  EXPECT_EQ(client.refused("pace", 1, one("pace", std::string("sensor")))["kind"].text(), "usage");
 }
 
 TEST_F(ZmqBridgeTest, CommandsMoveWhatTheyName) {
