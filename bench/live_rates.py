@@ -106,7 +106,7 @@ def phase(options, folder, large):
     runtime.mkdir(mode=0o700)
     scene = runtime / "rates.toml"
     scene.write_text(SCENE.format(assets=ROOT / "assets"))
-    command = [options.program, "run", str(scene), "--zmq", "--tier", options.tier, "--spp", str(options.spp), "--threads", "2"]
+    command = [options.program, "run", str(scene), "--zmq", "--tier", options.tier, "--spp", str(options.spp), "--threads", "2", "--root", str(ROOT)]
     command += ["--pace", options.pace] if options.pace != "realtime" else []
     command = (["taskset", "-c", "0,1"] if os.cpu_count() > 2 else []) + command
     env = {**os.environ, "XDG_RUNTIME_DIR": str(runtime)}
@@ -124,7 +124,7 @@ def phase(options, folder, large):
             state = sim.state()
     finally:
         server.send_signal(signal.SIGINT)
-        table = server.communicate(timeout=60)[1]
+        table = server.communicate(timeout=180)[1]
     rates = {part: {"wanted_hz": rate, "achieved_hz": round(counts[name] / simulated, 2), "per_wall_second": round(counts[name] / wall, 2)}
              for part, (name, rate) in topics.items()}
     return {"realtime_factor": round(simulated / wall, 3), "rates": rates, "sensors": state.get("sensors"), "said": table}
@@ -139,7 +139,7 @@ def main():
     parser.add_argument("--pace", default="realtime")
     parser.add_argument("--json", action="store_true")
     options = parser.parse_args()
-    with tempfile.TemporaryDirectory(prefix="gloam_rates_") as folder:
+    with tempfile.TemporaryDirectory(prefix="gloam_rates_", dir=ROOT / "build") as folder:
         results = {name: phase(options, folder, name == "with a 640x480 camera") for name in ("without", "with a 640x480 camera")}
     if options.json:
         print(json.dumps(results, indent=2))
