@@ -67,14 +67,14 @@ Result<Row> measure(const Scene& scene, Vec3 eye, const Options& options) {
   request.outputs = {"radiance"};
   request.render.spp = options.spp;
   GLOAM_TRY(auto camera, CameraSensor::create(shared->description, request, 1));
-  const auto frame = camera->capture(*shared->renderer, shared->mutex, now, now, 0);
+  const auto frame = camera->capture(*shared->renderer, shared->turns, now, now, 0);
   row.contrast = contrast_of(frame->radiance, frame->intrinsics.width);
   row.illuminance = static_cast<double>(shared->renderer->illuminance(p, {0, 0, 1}));
 
   GLOAM_TRY(const auto lidars, describe_lidars(*world.compiled()));
   GLOAM_TRY(auto lidar, LidarSensor::create(shared->description, lidars.front(), 1));
   const std::vector<PoseFrame> keys{now, now};
-  const auto scan = lidar->scan(*shared->renderer, shared->mutex, keys, 0);
+  const auto scan = lidar->scan(*shared->renderer, shared->turns, keys, 0);
   const ReturnShares returns = returns_of(*scan);
   row.returns = returns.surfaces, row.false_returns = returns.media;
   return row;

@@ -62,7 +62,7 @@ Status run(const Options& options) {
     const double wall_begin = seconds(CLOCK_MONOTONIC);
     const double cpu_begin = seconds(CLOCK_PROCESS_CPUTIME_ID);
     GLOAM_TRY_STATUS(solver->solve(snapshot, now));
-    frame = sensor->capture(*shared->renderer, shared->mutex, now, i > -kWarmUp ? previous : now,
+    frame = sensor->capture(*shared->renderer, shared->turns, now, i > -kWarmUp ? previous : now,
                             i + kWarmUp);
     const double wall_end = seconds(CLOCK_MONOTONIC);
     const double cpu_end = seconds(CLOCK_PROCESS_CPUTIME_ID);

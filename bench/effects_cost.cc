@@ -109,7 +109,7 @@ struct Filming {
     std::this_thread::sleep_for(std::chrono::milliseconds(300));
     GLOAM_TRY(const auto shared, simulation->renderer());
     const double begin = seconds();
-    sensor->capture(*shared->renderer, shared->mutex, now, frame == 0 ? now : before, frame);
+    sensor->capture(*shared->renderer, shared->turns, now, frame == 0 ? now : before, frame);
     const double took = seconds() - begin;
     ++frame;
     std::swap(now, before);

@@ -61,7 +61,7 @@ struct Studio {
     path.render.spp = spp;
     path.render.denoise = false;  // it would move what is to be told from the fast tier's
     GLOAM_TRY(const auto sensor, CameraSensor::create(shared.description, path, seed));
-    return sensor->capture(*shared.renderer, shared.mutex, now, before, 0)->radiance;
+    return sensor->capture(*shared.renderer, shared.turns, now, before, 0)->radiance;
   }
 };
 
@@ -152,7 +152,7 @@ Status run(const Options& options) {
     }
     GLOAM_TRY_STATUS(solver->solve(simulation->latest(), now));
     const PoseFrame& before = i > 0 ? previous : now;
-    const auto quick = fast->capture(*shared->renderer, shared->mutex, now, before, i);
+    const auto quick = fast->capture(*shared->renderer, shared->turns, now, before, i);
     if (options.at.contains(i)) {
       GLOAM_TRY(const auto halves, references(studio, now, before, options.spp, options.references,
                                               fmt::format("{}_{}_{}", stem, hash_to_hex(key), i)));

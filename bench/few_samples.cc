@@ -95,7 +95,7 @@ struct Studio {
     GLOAM_TRY(const auto sensor, CameraSensor::create(shared.description, asked, seed));
     std::vector<Picture> pictures;
     for (int i = 0; i < frames; ++i) {
-      const auto frame = sensor->capture(*shared.renderer, shared.mutex, now, now, i);
+      const auto frame = sensor->capture(*shared.renderer, shared.turns, now, now, i);
       Picture& picture = pictures.emplace_back(frame->radiance.size() / 3);
       for (size_t k = 0; k < picture.size(); ++k) {
         const float* p = &frame->radiance[3 * k];

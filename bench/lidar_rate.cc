@@ -85,9 +85,9 @@ Status run(const Arguments& arguments) {
   mj_setState(model, data.get(), simulator->latest().state().data(), mjSTATE_INTEGRATION);
   mj_forward(model, data.get());
 
-  std::mutex mutex;
+  RenderTurns turns;
   std::shared_ptr<const LidarScan> scan;
-  const auto ours = [&] { scan = sensor->scan(*renderer, mutex, keys, 0); };
+  const auto ours = [&] { scan = sensor->scan(*renderer, turns, keys, 0); };
   MultiRay theirs;
   const std::vector<LidarFiring> firings =
       lidar_pattern(sensor->model().pattern).fire(sensor->model(), 0);
@@ -125,7 +125,7 @@ Status run(const Arguments& arguments) {
   }
   // The same work: of the last instant alone, both find the same ranges.
   const std::vector<PoseFrame> still(2, keys.back());
-  scan = sensor->scan(*renderer, mutex, still, 0);
+  scan = sensor->scan(*renderer, turns, still, 0);
   size_t next = 0, same = 0, robot = 0;
   for (size_t i = 0; i < firings.size(); ++i) {
     const bool hit = next < scan->size() && scan->ring[next] == firings[i].ring &&

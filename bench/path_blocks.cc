@@ -90,7 +90,7 @@ Status render_blocks(const Arguments& a) {
     const uint64_t seed = a.seed * 1000003 + static_cast<uint64_t>(i);
     GLOAM_TRY(const auto sensor, CameraSensor::create(shared->description, request, seed));
     const double before = cpu_seconds();
-    const auto frame = sensor->capture(*shared->renderer, shared->mutex, poses, poses, 0);
+    const auto frame = sensor->capture(*shared->renderer, shared->turns, poses, poses, 0);
     seconds.push_back(cpu_seconds() - before);
     add_blocks(*frame, a.block, &blocks);
     picture.resize(frame->radiance.size());
