@@ -35,7 +35,6 @@ std::string physical_difference(const mjModel& a, const mjModel& b) {
   if (first.empty())                              \
     compare(#name, a.name, b.name,                \
             sizeof(type) * static_cast<size_t>(a.nr) * static_cast<size_t>(nc));
-#define XNV X
 #undef MJ_M
 #define MJ_M(n) a.n
   X(mjtNum, qpos0, nq, 1)
@@ -47,7 +46,6 @@ std::string physical_difference(const mjModel& a, const mjModel& b) {
   MJMODEL_POINTERS_EQUALITY
   MJMODEL_POINTERS_TENDON
   MJMODEL_POINTERS_ACTUATOR
-#undef XNV
 #undef X
 #define X(type, name, n) \
   if (!is_of_the_air(#name)) compare("opt." #name, &a.opt.name, &b.opt.name, sizeof(a.opt.name));
