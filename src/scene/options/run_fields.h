@@ -13,7 +13,7 @@ void visit_fields(Visitor& v, SimOptions& o) {
   v("timestep", o.timestep, FieldRule{.unit = "s", .min = 0, .max = 1, .open = true});
   v("duration", o.duration, FieldRule{.unit = "s", .min = 0, .max = kLongestTime, .open = true});
   v("seed", o.seed, FieldRule{});
-  v("pace", o.pace, FieldRule{.choices = {"fast", "realtime", "sensors"}});
+  v("pace", o.pace, FieldRule{.choices = {"fast", "realtime", "sensors"}, .may_be_empty = true});
 }
 
 template <class Visitor>
