@@ -93,7 +93,9 @@ class JsonMutator {
   // Copies of copies would grow without end.
   static Json small_copy(const Json& value) {
     constexpr size_t kLargest = 4096;
-    return value.is_structured() && value.dump().size() > kLargest ? Json() : value;
+    if (!value.is_structured()) return value;
+    const size_t size = value.dump(-1, ' ', false, Json::error_handler_t::replace).size();
+    return size > kLargest ? Json() : value;
   }
 
   Json number(const Json& value) {

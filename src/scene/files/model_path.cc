@@ -63,7 +63,7 @@ bool is_container(const fs::path& path) {
 }
 
 Status refuse_mesh(const fs::path& path, const std::string& as_written, const SourceLoc& loc) {
-  constexpr std::string_view kUnread[] = {".msh", ".fbx", ".usd"};
+  constexpr std::string_view kUnread[] = {".msh", ".fbx"};
   if (!is_model_file(path) &&
       std::ranges::find(kUnread, lower_extension(path)) == std::end(kUnread))
     return {};

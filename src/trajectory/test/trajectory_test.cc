@@ -239,11 +239,10 @@ TEST(TrajectoryFile, OfEachFormatIsOneAndTheSame) {
   EXPECT_EQ(tum->positions, kitti->positions);
 }
 
-// Rotations by 1 rad about (1, 2, 3), written with `decimals`.
-std::string rounded_kitti(int decimals) {
-  const RotationRows R =
-      rotation_of({std::cos(0.5), std::sin(0.5) / std::sqrt(14.0),
-                   2 * std::sin(0.5) / std::sqrt(14.0), 3 * std::sin(0.5) / std::sqrt(14.0)});
+// Rotations about (1, 2, 3), written with `decimals`.
+std::string rounded_kitti(int decimals, double angle) {
+  const double s = std::sin(angle / 2) / std::sqrt(14.0);
+  const RotationRows R = rotation_of({std::cos(angle / 2), s, 2 * s, 3 * s});
   std::string text;
   for (size_t i = 0; i < 9; ++i) {
     text += fmt::format("{:.{}f} ", R[i], decimals);
@@ -253,18 +252,22 @@ std::string rounded_kitti(int decimals) {
 }
 
 TEST(TrajectoryFile, RotationsOfFewDecimalsAreMadeRotationsWithANote) {
-  const auto exact = parse_trajectory(rounded_kitti(12), "x");
-  ASSERT_TRUE(exact.ok());
-  EXPECT_TRUE(exact->notes.empty());
-  for (const int decimals : {2, 3}) {
-    const auto read = parse_trajectory(rounded_kitti(decimals) + rounded_kitti(9), "x");
+  for (const int decimals : {2, 3, 12}) {
+    std::string rough, exact;
+    for (int i = 0; i < 60; ++i) {
+      rough += rounded_kitti(decimals, 0.1 * i);
+      exact += rounded_kitti(17, 0.1 * i);
+    }
+    const auto read = parse_trajectory(rough, "x"), wanted = parse_trajectory(exact, "x");
     ASSERT_TRUE(read.ok()) << read.error().to_string();
-    EXPECT_LT(distance_from_rotation(read->rotations[0]), 1e-12);
-    const double angle = angle_of(
-        relative(nearest_quaternion(read->rotations[0]), nearest_quaternion(exact->rotations[0])));
-    EXPECT_LT(angle, std::pow(10, -decimals));
-    ASSERT_EQ(read->notes.size(), 1u) << decimals;
-    EXPECT_THAT(read->notes[0], HasSubstr("the matrices of 1 of 2 poses"));
+    for (size_t i = 0; i < 60; ++i) {
+      EXPECT_LT(distance_from_rotation(read->rotations[i]), 0.001 + 1e-9);
+      const double angle = angle_of(relative(nearest_quaternion(read->rotations[i]),
+                                             nearest_quaternion(wanted->rotations[i])));
+      EXPECT_LT(angle, std::pow(10, -decimals) + 1e-7) << decimals;
+    }
+    EXPECT_EQ(read->notes.size(), decimals < 10 ? 1u : 0u) << decimals;
+    if (decimals < 10) EXPECT_THAT(read->notes[0], HasSubstr("of 60 poses are rotations to"));
   }
   // What is no rotation at all stays an error: mirrored, flat, sheared, scaled, of zeros.
   for (const char* text :
