@@ -26,9 +26,7 @@ uint64_t hash_model(const mjModel& model) {
 #define MJ_M(n) m->n
 #define X(type, name, nr, nc) \
   add(#name, m->name, sizeof(type) * static_cast<size_t>(m->nr) * static_cast<size_t>(nc));
-#define XNV X
   MJMODEL_POINTERS
-#undef XNV
 #undef X
 #undef MJ_M
 #define MJ_M(n) n
