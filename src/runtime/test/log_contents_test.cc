@@ -39,7 +39,7 @@ constexpr const char* kMover = R"(<mujoco model="mover"><option timestep="0.002"
 </worldbody><actuator><motor name="s" joint="shoulder"/><motor name="e" joint="elbow"/></actuator>
 </mujoco>)";
 
-constexpr const char* kScene = R"([[robot]]
+constexpr const char* kLoggedScene = R"([[robot]]
 name = "go"
 file = "mover.xml"
 [[robot]]
@@ -61,7 +61,7 @@ class LogContents : public testing::Test {
  protected:
   LogContents() {
     folder_.write("mover.xml", kMover);
-    folder_.write("s.toml", kScene);
+    folder_.write("s.toml", kLoggedScene);
     file_ = folder_.path() / "run.mcap";
     world_ = std::make_unique<World>(*World::compile(*load_scene(folder_.path() / "s.toml")));
     live_ = *LiveSimulation::create(*world_, {.seed = 7, .pace = Pace::kLockstep});
