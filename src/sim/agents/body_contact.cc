@@ -97,10 +97,11 @@ void BodyContacts::soften(const mjModel& m, const mjContact& contact, const Body
   const double in_bones = std::max(into - spring.depth, 0.0);
   const double force = returned * spring.stiffness * (into + kBones * in_bones);         // [N]
   const double slope = returned * spring.stiffness * (in_bones > 0 ? 1 + kBones : 1.0);  // [N/m]
-  // Force at the end of a part of the step: none of it for what is heavy, whose motion an explicit
-  // force keeps exactly; all of it for what is so light that an explicit force would make it jump.
+  // Force at the end of a part of the step: none of it where an explicit force keeps the motion;
+  // all of it for what is so light that an explicit force would make it jump.
   const double inverse_mass = std::max(data->efc_diagA[rows.first], 1e-9);
-  const double ahead = std::clamp(dt * std::sqrt(slope * inverse_mass), 1e-3, 1.0);
+  const double stiff = slope * inverse_mass * dt * dt;  // squared phase of a step; above 4 it jumps
+  const double ahead = std::clamp(0.5 * (stiff - 1), 1e-3, 1.0);
   const double mass = slope * ahead * dt * dt;
   const double reference = (force - slope * ahead * dt * parting) / mass;
   if (rows.is_pyramid) {

@@ -125,8 +125,12 @@ GLOAM_HD float cross_media(const MediaView& media, const LidarOptics& optics, co
     if (is_empty) continue;
     for (float from = t; from < walk.to();) {
       float to = min(walk.to(), from + step);
-      if (soft != nullptr)
+      if (soft != nullptr) {
+        // The overlap grows as the square of the range at first: no long steps near the sensor.
+        constexpr float kGrowth = 0.2f;
+        to = min(to, from + kGrowth * max(way + from, 0.01f));
         to = min(to, max(soft->end_of_bin(way + from) - way, from + 1e-3f * step));
+      }
       const Vec3f p_W = ray.o + ray.d * (0.5f * (from + to));
       MediumPoint point;
       float backscatter = 0;  // [1/(m sr)]
