@@ -69,7 +69,14 @@ name = "still"
 position = [0, 0, 1.5]
 look_at = [1, 0, 1]
 [camera.imager]
-bits = 8
+mosaic = "none"
+[camera.imager.exposure]
+f_number = 4
+shutter = 0.01
+iso = 1600
+[camera.imager.pixel]
+shot_noise = true
+read_noise = 3
 )");
   const auto pictures = [&](double time, bool denoise, const std::string& output) {
     CameraRequest request = small("still");

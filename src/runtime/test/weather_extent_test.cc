@@ -27,7 +27,7 @@ pattern = "raster"
 rows = 1
 columns = 16
 field_of_view = [0.5, 0.5]
-range_at_10_percent = 0
+range_at_10_percent = 300
 receiver_diameter = 0
 intensity = "signal"
 returns = "last"
@@ -62,7 +62,7 @@ TEST(WeatherExtent, ABoxDoesNotTakeTheRainAway) {
     const double law = std::exp(-2 * extinction * 67);
     for (const std::string tower : {"", kTower}) {
       const double wet =
-          wall_signal(fmt::format("[weather]\nrain = {}\n", rate), kFloor + tower + kTarget);
+          wall_signal(fmt::format("[weather]\nwetness = 0\nrain = {}\n", rate), kFloor + tower + kTarget);
       std::printf("%.0f mm/h%s: T2 = %.3f, law %.3f\n", rate, tower.empty() ? "" : ", a box",
                   wet / clear, law);
       // Bands of water differ a little from the geometric law of all large drops.
