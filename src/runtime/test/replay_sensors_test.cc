@@ -18,12 +18,12 @@ namespace fs = std::filesystem;
 // Contacts, a motor and an impulse: readings that no pose tells.
 constexpr const char* kMeasuredModel = R"(<mujoco model="m"><option timestep="0.002"/>
 <worldbody><light pos="0 0 4"/><geom type="plane" size="5 5 .1"/>
-<body name="box" pos="0 0 .3" euler="20 30 0"><freejoint/>
-  <geom type="box" size=".2 .1 .1" mass="2"/><site name="imu"/></body>
 <body name="arm" pos="1 0 1"><joint name="swing" axis="0 1 0"/>
   <geom type="capsule" size=".05" fromto="0 0 0 .5 0 0"/><site name="wrist" pos=".5 0 0"/></body>
+<body name="box" pos="0 0 .3" euler="20 30 0"><freejoint/>
+  <geom type="box" size=".2 .1 .1" mass="2"/><site name="imu"/></body>
 </worldbody>
-<actuator><position name="swing" joint="swing" kp="20"/></actuator>
+<actuator><motor name="swing" joint="swing"/></actuator>
 <sensor><accelerometer name="acc" site="imu"/><gyro name="gyro" site="imu"/>
 <touch name="touch" site="imu"/><force name="force" site="wrist"/>
 <jointpos name="angle" joint="swing"/><actuatorfrc name="effort" actuator="swing"/></sensor>
