@@ -145,7 +145,7 @@ def test_dynamics_per_episode_without_a_recompile(tmp_path: Path) -> None:
 
 def test_environments_draw_dynamics_for_each_episode(tmp_path: Path) -> None:
     pytest.importorskip("gymnasium")
-    scene = {"robot": [{"name": "go", "file": str(ball_file(tmp_path))}]}
+    scene = {"robot": [{"name": "go", "file": ball_file(tmp_path).name}]}
     env = gloam.make_env(gloam.Scene.from_dict(scene, tmp_path), {"joints": {"joints": "go"}}, {"controls": "go", "low": [-1], "high": [1]},
                          settings={"dynamics": {"mass": (0.5, 2.0), "friction": (0.5, 1.5)}})
     masses = []
@@ -160,7 +160,7 @@ def test_environments_draw_dynamics_for_each_episode(tmp_path: Path) -> None:
 
 
 def test_arrays_of_robots_take_effect_or_refuse(tmp_path: Path) -> None:
-    with gloam.load(gloam.Scene.from_dict({"robot": [{"name": "go", "file": str(ball_file(tmp_path))}]})) as sim:
+    with gloam.load(gloam.Scene.from_dict({"robot": [{"name": "go", "file": ball_file(tmp_path).name}]}, tmp_path)) as sim:
         robot = sim.robots["go"]
         with sim.record(tmp_path / "run.mcap", topics=["/tf"]):
             robot.controls[:] = 0.02

@@ -58,6 +58,7 @@ PrivateModel::PrivateModel(std::shared_ptr<const CompiledWorld> world)
 
 void PrivateModel::renew() {
   const mjModel& from = *world_->model;
+  model_.opt = from.opt;
   for_each_own_array(model_, from, [](auto* own, const auto* array, size_t bytes) {
     if (bytes > 0) std::memcpy(own, array, bytes);
   });

@@ -18,7 +18,7 @@ class PrivateModel {
   PrivateModel& operator=(const PrivateModel&) = delete;
 
   mjModel& model() { return model_; }
-  /// Writes what the World has into the own arrays, which stay where they are.
+  /// Writes what the World has into the options and the own arrays, which stay where they are.
   void renew();
   /// Makes bounds of trees own, too: mj_setConst writes them.
   void own_bounds();
