@@ -61,8 +61,8 @@ TEST(WeatherExtent, ABoxDoesNotTakeTheRainAway) {
     const auto extinction = static_cast<double>(rain_particles(rate).extinction());
     const double law = std::exp(-2 * extinction * 67);
     for (const std::string tower : {"", kTower}) {
-      const double wet =
-          wall_signal(fmt::format("[weather]\nwetness = 0\nrain = {}\n", rate), kFloor + tower + kTarget);
+      const double wet = wall_signal(fmt::format("[weather]\nwetness = 0\nrain = {}\n", rate),
+                                     kFloor + tower + kTarget);
       std::printf("%.0f mm/h%s: T2 = %.3f, law %.3f\n", rate, tower.empty() ? "" : ", a box",
                   wet / clear, law);
       // Bands of water differ a little from the geometric law of all large drops.

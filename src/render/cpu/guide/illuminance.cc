@@ -37,9 +37,12 @@ Vec3f sample_irradiance(const SceneView& scene, const CpuTracer& tracer, Vec3f p
     Ray shadow;
     aim_shadow_ray(p, n, 0.0f, light, &shadow);
     const float weight = light.is_delta ? 1.0f : mis_weight(light.pdf, cosine * kInvPi);
-    const Vec3f arriving = light.radiance * (cosine * weight / light.pdf);
-    path.result.radiance +=
-        paths::trace_shadow(scene, tracer, shadow, light.casts_shadow, true, arriving, &path);
+    Vec3f arriving = light.radiance * (cosine * weight / light.pdf);
+    if (light.casts_shadow)
+      arriving *= paths::transmit(scene, tracer, shadow, true, &path.result.rays);
+    // Shadow rays end short of what they aim at; thick media dim on that last bit, too.
+    shadow.tmax = length(p + light.wi * light.distance + light.lift - shadow.o);
+    path.result.radiance += arriving * paths::through_media(scene, shadow, true, &path.sampler);
   }
 
   path.ray.d = Frame::from_z(n).to_world(sample_cosine_hemisphere(path.sampler.next_2d(true)));
