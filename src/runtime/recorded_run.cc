@@ -366,6 +366,8 @@ Result<RunReport> record_motion(const World& world, const RunRequest& request,
     prepared = seconds_since(start);
   }
   if (!log_request.file.empty()) {
+    // From here on there is a file to finish: run_to_step() asks again whether to go on.
+    if (progress) progress({"preparing", 0, seconds_since(start)});
     GLOAM_TRY(log, LogRecorder::start(*simulation, log_request));
   }
   GLOAM_TRY(auto metric_queue,

@@ -63,9 +63,9 @@ class Interrupt(ProgramTest):
         self.stopped(signal.SIGTERM, "render", self.model, "--camera", "side", *HEAVY)
 
     def test_a_run_in_the_middle_of_a_picture(self):
-        out = self.folder / "out"
         for number in (signal.SIGINT, signal.SIGTERM):
-            self.stopped(number, "run", self.model, "--duration", "10", "--out", out, "--overwrite", *HEAVY,
+            out = self.folder / f"out{int(number)}"
+            self.stopped(number, "run", self.model, "--duration", "10", "--out", out, *HEAVY,
                          started=lambda: (out / "summary.json").exists())
             summary = json.loads((out / "summary.json").read_text())
             self.assertEqual((summary["state"], summary["cameras"][0]["frames"]), ("finished", 0))
