@@ -16,9 +16,9 @@ def test_names_that_nearly_fit_are_told(tmp_path: Path) -> None:
     scene = ball_scene(tmp_path)
     with gloam.load(scene) as sim:
         robot = sim.robots["go"]
-        for ask, near in ((lambda: sim.joints["go/elbo"], "go/elbow"), (lambda: robot.joints["elbo"], "elbow"), (lambda: robot.actuators["moter"], "motor"),
+        for ask, near in ((lambda: sim.joints["go/elbo"], "go/elbow"), (lambda: robot.joints["fre"], "free"), (lambda: robot.actuators["moter"], "motor"),
                           (lambda: sim.memory.array("qposs"), "qpos"), (lambda: sim.value("qposs"), "qpos"), (lambda: sim.cameras["smal"], "small"),
-                          (lambda: robot.set_joint_goals({"elbo": 0.1}), "elbow"), (lambda: sim.set_live_field("gravit", [0, 0, 0]), "gravity"),
+                          (lambda: robot.set_joint_goals({"fre": 0.1}), "free"), (lambda: sim.set_live_field("gravit", [0, 0, 0]), "gravity"),
                           (lambda: gloam.describe("weather.visibilty"), "visibility"), (lambda: gloam.describe("wether.visibility"), "weather"),
                           (lambda: gloam.describe("robot.go.positon"), "position"), (lambda: sim.set("weather.visibilty", 3), "visibility"),
                           (lambda: scene["camera.smal.width"], "small"), (lambda: sim.publish("/clok", {}), ""),
