@@ -1,4 +1,4 @@
-"""Every scene of ./gloam gallery still renders, and docs/gallery holds what its chapters say."""
+"""Every scene of ./gloam gallery still renders, and docs/gallery agrees with the chapters in tools/gallery."""
 import subprocess
 import sys
 import tempfile
@@ -47,24 +47,43 @@ class Gallery(unittest.TestCase):
         self.assertGreaterEqual(len(first), 3)
         self.assertEqual(first, second)
 
-    def test_the_book_is_what_the_chapters_say(self):
+    def test_pages_and_scenes_agree_with_the_chapters(self):
         chapters, book = read_chapters(gallery.HERE), gallery.BOOK
         pictures = [picture for chapter in chapters for picture in chapter.pictures]
         names = {picture.file_name for picture in pictures}
-        self.assertEqual({path.stem for path in book.glob("*.jpg")}, names, "pictures there, and pictures wanted: ./gloam gallery --only NAME")
+        self.assertEqual({path.stem for path in book.glob("*.jpg")}, names, "missing or superfluous pictures: ./gloam gallery --only NAME")
         self.assertEqual({path.stem for path in (book / "scenes").iterdir()}, names)
-        self.assertEqual({path.name for path in book.iterdir() if path.suffix != ".jpg"}, {"README.md", "scenes"}, "nothing else lies there")
+        texts = page.pages(chapters, book)
+        self.assertEqual({path.name for path in book.iterdir() if path.suffix != ".jpg"}, {"scenes", *texts}, "no other files belong here")
+        self.assertEqual(set(texts), {"README.md", *(f"{chapter.key}.md" for chapter in chapters)})
         for picture in pictures:
             self.assertEqual((book / "scenes" / f"{picture.file_name}.toml").read_text(), picture.scene(),
                              f"{picture.name} has changed since its picture was made: ./gloam gallery --only {picture.name}")
-        self.assertEqual((book / "README.md").read_text(), page.text(chapters, book))
+        for name, text in texts.items():
+            self.assertEqual((book / name).read_text(), text, f"{name} is out of date: ./gloam gallery --text-only")
         size = sum(path.stat().st_size for path in book.rglob("*") if path.is_file())
         self.assertLess(size, 4 * MEGABYTE)
 
-    def test_what_matches_nothing_is_said(self):
+    def test_text_only_writes_a_page_per_chapter_and_an_index_that_leads_to_each(self):
+        folder = self.scratch()
+        chapters = read_chapters(gallery.HERE)
+        for chapter in chapters[:2]:
+            for picture in chapter.pictures[:3]:
+                (folder / f"{picture.file_name}.jpg").touch()
+        (folder / "removed_chapter.md").touch()
+        done = gallery_run("--text-only", "--out", folder)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual({path.name for path in folder.glob("*.md")}, {"README.md", *(f"{chapter.key}.md" for chapter in chapters[:2])})
+        for chapter in chapters[:2]:
+            self.assertIn(f"]({chapter.key}.md)", (folder / "README.md").read_text())
+            text = (folder / f"{chapter.key}.md").read_text()
+            self.assertEqual([picture.key for picture in chapter.pictures if f"]({picture.file_name}.jpg)" in text],
+                             [picture.key for picture in chapter.pictures[:3]])
+
+    def test_only_without_a_match_is_an_error(self):
         done = gallery_run("--only", "no such picture")
         self.assertEqual(done.returncode, 2)
-        self.assertIn("no picture has 'no such picture' in its name", done.stderr)
+        self.assertIn("no picture name contains 'no such picture'", done.stderr)
 
 
 class Plots(unittest.TestCase):
@@ -92,7 +111,7 @@ class Plots(unittest.TestCase):
 
 
 class FirstLook(unittest.TestCase):
-    """A robot as a newcomer first sees it; all of the packages' are in gallery_models.py."""
+    """Default pictures of robots. gallery_models.py checks all models of the packages."""
     ROBOTS = ["mjlab/mjlab/asset_zoo/robots/unitree_go1/xmls/go1.xml", *(f"robosuite/robosuite/models/assets/{name}" for name in (
         "robots/panda/robot.xml", "robots/jaco/robot.xml", "robots/baxter/robot.xml", "grippers/robotiq_gripper_140.xml", "objects/door.xml",
         "bullet_data/panda_description/urdf/hand.urdf", "grippers/fourier_left_hand.xml"))]
@@ -109,13 +128,13 @@ class FirstLook(unittest.TestCase):
 
 
 class Faults(unittest.TestCase):
-    """Pictures that cannot be good are told from those that can."""
+    """Detection of faulty pictures."""
 
     def test_of_the_display(self):
         scene = bytes(range(40, 200)) * 10
         for name, grey, words in [("black", bytes(1600), "black"), ("white", bytes([255]) * 1600, "white"),
                                   ("half white", bytes([255]) * 900 + scene[:700], "white"),
-                                  ("flat", bytes([128]) * 1600, "nothing to see")]:
+                                  ("flat", bytes([128]) * 1600, "no contrast")]:
             self.assertIn(words, pixels.fault_of_display(grey) or "", name)
         self.assertIsNone(pixels.fault_of_display(scene))
 

@@ -1,4 +1,4 @@
-"""What the gallery shows: chapters/*.toml as values."""
+"""The gallery's contents: chapters/*.toml as values."""
 import re
 import tomllib
 from dataclasses import dataclass
@@ -7,20 +7,20 @@ from pathlib import Path
 
 @dataclass
 class Picture:
-    """One picture: a set, and the lines that are added to it."""
+    """One picture: a set, and the lines added to it."""
     chapter: str
     key: str
     title: str
     base: str                    # text of the set's scene; may be empty
-    toml: str                    # added to it
-    mjcf: str                    # of the set's model, shown beside it
-    camera: str                  # or the sensor, of signals
+    toml: str                    # lines added to the set
+    mjcf: str                    # elements of the set's model to show beside the picture
+    camera: str                  # or the name of a sensor, when signals are plotted
     size: tuple[int, int]
     spp: int
-    time: float                  # of the simulation [s]
-    panels: list[dict]           # of LiDAR scans (clouds.py), instead of a camera's picture
-    show: str = "rgb"            # what of it is shown: rgb, or a function of show.py
-    axis: str = ""               # what signals are of, and their unit
+    time: float                  # simulation time of the picture [s]
+    panels: list[dict]           # LiDAR scans to draw (clouds.py), instead of a camera's picture
+    show: str = "rgb"            # channel to show: rgb, or a function of show.py
+    axis: str = ""               # quantity and unit on the vertical axis of plotted signals
 
     @property
     def name(self):
@@ -38,12 +38,14 @@ class Picture:
 class Chapter:
     key: str
     title: str
-    text: str
+    text: str                    # at the top of the chapter's page
+    summary: str                 # one sentence for the index
+    cover: str                   # key of the picture that the index shows
     pictures: list[Picture]
 
 
 def element(folder, set_name, name):
-    """The element of the set's model that has this name, as it stands there."""
+    """The element with this name in the set's model, as written there."""
     text = (folder / "sets" / f"{set_name}.xml").read_text()
     found = re.search(rf'^ *<(\w+) name="{name}"[^>]*?(/>|>.*?</\1>)', text, re.M | re.S)
     if not found:
@@ -66,14 +68,16 @@ def read_picture(folder, chapter, data, defaults):
 
 
 def read_chapters(folder):
-    """Chapters in the order of their files' names: "20_patterns.toml" is chapter "patterns"."""
+    """Chapters, ordered by file name: "20_patterns.toml" is chapter "patterns"."""
     chapters = []
     for path in sorted((Path(folder) / "chapters").glob("*.toml")):
         data, key = tomllib.loads(path.read_text()), path.stem.split("_", 1)[1]
         pictures = [read_picture(Path(folder), key, picture, data.get("all", {})) for picture in data["picture"]]
-        chapters.append(Chapter(key, data["title"], data.get("text", "").strip(), pictures))
+        if data["cover"] not in {picture.key for picture in pictures}:
+            raise ValueError(f"chapter {key}: cover = \"{data['cover']}\" is not the name of one of its pictures")
+        chapters.append(Chapter(key, data["title"], data["text"].strip(), data["summary"], data["cover"], pictures))
     names = [picture.file_name for chapter in chapters for picture in chapter.pictures]
     twice = {name for name in names if names.count(name) > 1}
     if twice:
-        raise ValueError(f"more than one picture is called {', '.join(sorted(twice))}")
+        raise ValueError(f"duplicate picture names: {', '.join(sorted(twice))}")
     return chapters

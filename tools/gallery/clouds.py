@@ -11,7 +11,7 @@ import subprocess
 LETTERS = {"<f4": "f", "<u4": "I", "<u2": "H", "|u1": "B"}
 STOPS = [(70, 60, 160), (70, 110, 220), (36, 160, 170), (110, 205, 90), (250, 215, 60), (255, 110, 50)]   # dark to light
 INK = (14, 15, 20)
-MARKS = {"medium": lambda point: point["part"] == 0, "return": lambda point: point["return_number"] > 0}   # what is red
+MARKS = {"medium": lambda point: point["part"] == 0, "return": lambda point: point["return_number"] > 0}   # marked red
 
 
 def read_npy(path):
@@ -25,7 +25,7 @@ def read_npy(path):
 
 
 def shade(value):
-    """A colour of 0 … 1."""
+    """A colour for a value in 0 … 1."""
     x = min(max(value, 0), 1) * (len(STOPS) - 1)
     i = min(int(x), len(STOPS) - 2)
     return tuple(round(a + (b - a) * (x - i)) for a, b in zip(STOPS[i], STOPS[i + 1]))
@@ -86,7 +86,7 @@ def draw(panel, spec, points):
 
 
 def jpeg(results, panels, size):
-    """The picture of the panels, of a recording in the folder `results`."""
+    """Draws the panels from a recording in the folder `results`."""
     gap = 6
     width, height = (size[0] - gap * (len(panels) - 1)) // len(panels), size[1]
     rows = [bytearray() for _ in range(height)]

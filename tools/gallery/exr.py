@@ -9,7 +9,7 @@ ZIP, ZIP_LINES = 3, 16
 
 
 def read(path):
-    """The planes by their channel's name, rows from the top."""
+    """Planes by channel name, rows from the top."""
     data = path.read_bytes()
     if struct.unpack_from("<I", data)[0] != MAGIC:
         raise ValueError(f"{path} is no EXR")
@@ -57,7 +57,7 @@ def channels(table):
 
 
 def unzipped(block):
-    """Undoes the sums of neighbours and the order by halves that make floats easy to compress."""
+    """Reverses the predictor (differences of neighbours, split into halves) that EXR applies before compression."""
     data = bytearray(zlib.decompress(block))
     for i in range(1, len(data)):
         data[i] = (data[i - 1] + data[i] - 128) & 255

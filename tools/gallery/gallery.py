@@ -1,12 +1,13 @@
 #!/usr/bin/env python3
-"""Makes docs/gallery: a picture of every material, pattern, lamp, sky, medium, lens and sensor that Gloam has, with the scene that makes it.
+"""Makes docs/gallery: a picture of every material, pattern, lamp, sky, medium, lens and sensor, with the scene that produces it.
 
-  ./gloam gallery                all pictures, scenes and the page (some half an hour on two cores)
-  ./gloam gallery --only glass   pictures with "glass" in chapter/name; the page is made of what is there
-  ./gloam gallery --models DIR   a contact sheet of somebody's robots, and which are dark or specks
-  ./gloam gallery --quick        small and noisy, into build/gallery: does every scene still render? (of generated places one seed)
+  ./gloam gallery                all pictures, scenes and pages (about half an hour on two cores)
+  ./gloam gallery --only glass   pictures with "glass" in CHAPTER/NAME; pages show all pictures that exist
+  ./gloam gallery --text-only    pages only; renders nothing
+  ./gloam gallery --models DIR   a contact sheet of all models in a folder, and a list of the ones that are too dark or too small
+  ./gloam gallery --quick        small and noisy pictures in build/gallery, to check that every scene still renders (one seed per place)
 
-Chapters are tools/gallery/chapters/*.toml, each picture a few lines that are added to a set of tools/gallery/sets.
+Chapters are tools/gallery/chapters/*.toml. Each picture is a few lines added to a set in tools/gallery/sets.
 """
 import argparse
 import array
@@ -32,8 +33,8 @@ ROOT = HERE.parent.parent
 PROGRAM = ROOT / "build" / os.environ.get("GLOAM_PRESET", "release") / "bin" / "gloam"
 BOOK = ROOT / "docs" / "gallery"
 DRAFT = ROOT / "build" / "gallery"
-CHANNELS = {"rgb": ["rgb", "radiance"], "boxes": ["rgb", "boxes"], "parts": ["segmentation"], "classes": ["segmentation"]}  # others have one, of their name
-TO_ROOT = "../../../"     # from the sets, and from the book's scenes
+CHANNELS = {"rgb": ["rgb", "radiance"], "boxes": ["rgb", "boxes"], "parts": ["segmentation"], "classes": ["segmentation"]}  # by default one channel, named like `show`
+TO_ROOT = "../../../"     # from the sets and from docs/gallery/scenes
 
 
 def say(text, end="\n"):
@@ -41,7 +42,7 @@ def say(text, end="\n"):
 
 
 def write_scene(picture, folder):
-    """The picture's whole scene, as a file that `gloam render` takes."""
+    """Writes the picture's complete scene as a file for `gloam render`."""
     path = folder / "scenes" / f"{picture.file_name}.toml"
     path.parent.mkdir(parents=True, exist_ok=True)
     path.write_text(picture.scene().replace(TO_ROOT, os.path.relpath(ROOT, path.parent) + "/"))
@@ -49,13 +50,13 @@ def write_scene(picture, folder):
 
 
 def gloam(*arguments):
-    """Runs the program; returns what it complains of, or nothing."""
+    """Runs the program; returns its error message, or None."""
     done = subprocess.run([PROGRAM, *arguments], stdin=subprocess.DEVNULL, capture_output=True, text=True)
     return done.stderr.strip() if done.returncode != 0 else None
 
 
 def shoot(picture, scene, scratch, size, spp, threads):
-    """The picture as a file that ffmpeg reads, and what is wrong with it."""
+    """Returns the picture as a file that ffmpeg reads, and a description of its fault or None."""
     out = scratch / "out"
     if picture.show == "signals":
         wrong = gloam("run", scene, "--root", ROOT, "--duration", str(picture.time), "--output", "sensors", "--out", out)
@@ -76,7 +77,7 @@ def shoot(picture, scene, scratch, size, spp, threads):
 
 
 def render(picture, folder, quick):
-    """Writes folder/NAME.jpg; returns what is wrong with it, or nothing."""
+    """Writes folder/NAME.jpg; returns a description of its fault, or None."""
     scene = write_scene(picture, folder)
     if picture.panels:
         return render_scans(picture, scene, folder)
@@ -100,13 +101,13 @@ def render_scans(picture, scene, folder):
 
 
 def keep(picture, folder, data):
-    new = folder / f"{picture.file_name}.jpg.new"     # complete or absent, also after Ctrl-C
+    new = folder / f"{picture.file_name}.jpg.new"     # renamed when complete, so that Ctrl-C leaves no partial file
     new.write_bytes(data)
     new.replace(folder / f"{picture.file_name}.jpg")
 
 
 def render_all(pictures, folder, quick):
-    """Renders with progress and the time left; returns the names of pictures that are wrong."""
+    """Renders, printing progress and the remaining time; returns the names of faulty pictures."""
     broken, start = [], time.monotonic()
     cost = [1 if quick else picture.size[0] * picture.size[1] * picture.spp for picture in pictures]
     with ThreadPoolExecutor(os.cpu_count() if quick else 1) as pool:
@@ -127,7 +128,7 @@ def render_all(pictures, folder, quick):
 
 
 def one_of_each_place(pictures):
-    """All but the places that differ from one before by their seed alone: house_3_above from house_1_above."""
+    """All pictures except places that differ from an earlier one only in their seed, such as house_3_above from house_1_above."""
     places, chosen = set(), []
     for picture in pictures:
         place = re.sub(r"_\d+", "", picture.key) if picture.chapter == "environments" else picture.name
@@ -139,26 +140,31 @@ def one_of_each_place(pictures):
 
 def main():
     parser = argparse.ArgumentParser(prog="./gloam gallery", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--only", metavar="TEXT", default="", help="pictures with TEXT in chapter/name")
-    parser.add_argument("--quick", action="store_true", help="small and noisy pictures")
+    parser.add_argument("--only", metavar="TEXT", default="", help="render only pictures with TEXT in CHAPTER/NAME")
+    parser.add_argument("--quick", action="store_true", help="render small and noisy pictures")
+    parser.add_argument("--text-only", action="store_true", help="write the pages without rendering")
     parser.add_argument("--models", type=Path, metavar="FOLDER",
-                        help="instead, a contact sheet of all MJCF and URDF models in FOLDER, as a newcomer first sees each; into --out or build/models")
-    parser.add_argument("--out", type=Path, help="another folder than docs/gallery or build/gallery, inside the repository")
+                        help="make a contact sheet of all MJCF and URDF models in FOLDER, lit as by default, in --out or build/models")
+    parser.add_argument("--out", type=Path, help="output folder inside the repository (default: docs/gallery, or build/gallery with --quick)")
     args = parser.parse_args()
     if args.models:
         return models.run(PROGRAM, args.models.resolve(), (args.out or ROOT / "build" / "models").resolve(), say)
     folder = (args.out or (DRAFT if args.quick else BOOK)).resolve()
     if not folder.is_relative_to(ROOT):
-        parser.error(f"{folder} is not inside {ROOT}, where the scenes find their sets")
+        parser.error(f"{folder} is outside {ROOT}; scenes refer to their sets by relative paths")
     chapters = read_chapters(HERE)
+    if args.text_only:
+        page.write(chapters, folder)
+        print(folder / "README.md")
+        return 0
     pictures = [picture for chapter in chapters for picture in chapter.pictures if args.only in picture.name]
     if args.quick:
         pictures = one_of_each_place(pictures)
     if not pictures:
-        parser.error(f"no picture has '{args.only}' in its name")
+        parser.error(f"no picture name contains '{args.only}'")
     broken = render_all(pictures, folder, args.quick)
     page.write(chapters, folder)
-    say(f"{len(pictures) - len(broken)} of {len(pictures)} pictures are well: {folder}")
+    say(f"{len(pictures) - len(broken)} of {len(pictures)} pictures without faults: {folder}")
     print(folder / "README.md")
     return 1 if broken else 0
 

@@ -1,4 +1,4 @@
-"""Writes what the gallery's sets are made of: the test object, skies, maps and a photometric file, all by formula.
+"""Generates the files used by the gallery's sets: the test object, skies, maps and a photometric file.
 
 Run it from anywhere; the files in tools/gallery/props are its output, byte for byte.
 """
@@ -15,7 +15,7 @@ PROPS = HERE / "props"
 
 
 def turned(profile, sides=64):
-    """Turns (radius, height) points about +Y, smooth where the profile bends by less than 40 degrees."""
+    """Revolves (radius, height) points about +Y, smooth where the profile bends by less than 40 degrees."""
     steps = [(b[0] - a[0], b[1] - a[1]) for a, b in zip(profile, profile[1:])]
     outward = [(dy / math.hypot(dx, dy), -dx / math.hypot(dx, dy)) for dx, dy in steps]
     length = sum(math.hypot(*step) for step in steps)
@@ -158,7 +158,7 @@ def evening(azimuth, elevation):
 
 
 def dimples(size=128, cells=4):
-    """A map of normals: round bosses in rows."""
+    """A normal map: round bosses in rows."""
     def slope(x, y):
         u, v = (x + 0.5) / size * cells % 1 - 0.5, (y + 0.5) / size * cells % 1 - 0.5
         r = math.hypot(u, v)
@@ -169,7 +169,7 @@ def dimples(size=128, cells=4):
 
 
 def holes(size=128, cells=4):
-    """A map of opacity: round holes, staggered."""
+    """An opacity map: round holes, staggered."""
     def solid(x, y):
         v = (y + 0.5) / size * cells
         u = (x + 0.5) / size * cells + 0.5 * (int(v) % 2)

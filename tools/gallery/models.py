@@ -1,7 +1,7 @@
 """A contact sheet of every model in a folder: `./gloam gallery --models FOLDER [--out FOLDER]`.
 
-Each MJCF and URDF that stands by itself is rendered as a newcomer first sees it: by the free camera, without options. Beside the
-pictures stands how much of each the model covers and how bright it is; `faults` says what a stranger would call dark or a speck.
+Each MJCF and URDF file that compiles on its own is rendered by the free camera with default options. The sheet lists the area
+that the model covers and its brightness; `faults` reports pictures that are too dark or in which the model is too small.
 """
 import html
 import json
@@ -19,7 +19,7 @@ SIZE = (320, 240)
 
 
 def models_in(folder):
-    """Files whose root element makes them models; parts that others include are found out when they do not compile."""
+    """Files with the root element of a model. Files meant for inclusion are detected later, when they fail to compile."""
     for path in sorted([*folder.rglob("*.xml"), *folder.rglob("*.urdf")]):
         head = path.read_text(errors="replace")[:4000]
         if re.search(r"<(mujoco|robot)[\s>]", re.sub(r"<!--.*?-->", "", head, flags=re.S)):
@@ -27,7 +27,7 @@ def models_in(folder):
 
 
 def measure(program, model, root, out, spp=8):
-    """Renders one model; returns {"picture", "cover", "median", "mean"}, or {"skipped": why}."""
+    """Renders one model; returns {"picture", "cover", "median", "mean"}, or {"skipped": reason}."""
     done = subprocess.run([program, "-q", "render", model, "--camera", "free", "--spp", str(spp), "--resolution", f"{SIZE[0]}x{SIZE[1]}", "--root",
                            root, "--output", "rgb,segmentation", "--out", out], stdin=subprocess.DEVNULL, capture_output=True, text=True)
     if done.returncode != 0:
@@ -42,12 +42,12 @@ def measure(program, model, root, out, spp=8):
 
 
 def faults(result):
-    """What is wrong with a first look, in words."""
+    """Describes each fault of a picture."""
     if result["median"] < LEAST_MEDIAN:
         yield f"dark: median {result['median']} of 255"
     if result["cover"] < LEAST_COVER:
         yield f"a speck: {100 * result['cover']:.0f} % of the picture"
-    if MOST_COVER < result["cover"] < 0.95:  # beyond that it is a place with a floor to the horizon, not a robot
+    if MOST_COVER < result["cover"] < 0.95:  # more than that is a floor to the horizon, not a robot
         yield f"too near: {100 * result['cover']:.0f} % of the picture"
 
 
@@ -73,7 +73,7 @@ def write_sheet(out, results):
 def run(program, folder, out, say):
     models = list(models_in(folder))
     if not models:
-        say(f"error: no MJCF or URDF in {folder}")
+        say(f"error: no MJCF or URDF files in {folder}")
         return 1
     results, start = {}, time.time()
     for i, model in enumerate(models):
@@ -87,5 +87,5 @@ def run(program, folder, out, say):
     (out / "models.json").write_text(json.dumps(results, indent=1))
     shown = [r for r in results.values() if "picture" in r]
     good = sum(not any(faults(r)) for r in shown)
-    print(f"{out / 'index.html'}\n{good} of {len(shown)} models are seen well ({100 * good / max(len(shown), 1):.1f} %); {len(results) - len(shown)} files are no models by themselves")
+    print(f"{out / 'index.html'}\n{good} of {len(shown)} models have good pictures ({100 * good / max(len(shown), 1):.1f} %); {len(results) - len(shown)} files do not compile on their own")
     return 0

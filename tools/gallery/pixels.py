@@ -1,4 +1,4 @@
-"""Pictures by ffmpeg, and what can be told of one without knowing what it shows."""
+"""Reads and writes pictures with ffmpeg, and detects faults that are independent of their content."""
 import array
 import subprocess
 
@@ -17,7 +17,7 @@ def raw(path, pixels):
 
 def fault_of_light(values):
     bad = sum(not 0 <= value < 1e9 for value in values)
-    return f"{bad} values of {len(values)} are no light: negative, infinite or not numbers" if bad else None
+    return f"{bad} values of {len(values)} are negative, infinite or NaN" if bad else None
 
 
 def fault_of_display(grey):
@@ -28,5 +28,5 @@ def fault_of_display(grey):
     if mean > 243 or sum(value >= 254 for value in grey) > 0.5 * count:
         return f"white: mean {mean:.0f} of 255"
     if max(grey) - min(grey) < 20:
-        return f"nothing to see: values from {min(grey)} to {max(grey)} of 255"
+        return f"no contrast: values from {min(grey)} to {max(grey)} of 255"
     return None

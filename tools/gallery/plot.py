@@ -52,7 +52,7 @@ GROUND, GRID, INK = (24, 24, 30), (62, 62, 74), (225, 225, 225)
 
 
 class Plot:
-    """Lines within axes that hold all of `times` [s] and `values`."""
+    """A line plot with axes that cover `times` [s] and `values`."""
     LEFT, RIGHT, TOP, BOTTOM = 46, 12, 26, 36   # of the axes' frame, from the picture's edges [px]
 
     def __init__(self, size, times, values, value_label):

@@ -1,4 +1,4 @@
-"""Pictures of what cameras put out that is no picture: depth, ids, normals, flow, raw numbers, temperatures, events."""
+"""Visualizes outputs that are not colour images: depth, ids, normals, flow, raw values, temperatures, events."""
 import array
 import colorsys
 import csv
@@ -10,7 +10,7 @@ import exr
 import pixels
 import plot
 
-# Colours from cold to hot, and from near to far; between them straight lines.
+# Colours from cold to hot and from near to far, interpolated linearly.
 HEAT = [(30, 20, 90), (87, 16, 110), (188, 55, 84), (249, 142, 9), (252, 255, 164)]
 RANGE = [(122, 4, 3), (249, 98, 20), (225, 220, 55), (70, 248, 132), (40, 140, 240), (48, 18, 59)]
 
@@ -80,7 +80,7 @@ def albedo(shot, size):
 
 
 def motion(shot, size):
-    """Hue: whereto; saturation and value: how far, of the fastest pixel. Grey stands still."""
+    """Hue is direction; saturation and value are speed relative to the fastest pixel. Grey is no motion."""
     planes = exr.read(Path(f"{shot}_motion.exr"))
     flow = list(zip(planes["U"], planes["V"]))
     most = max(math.hypot(u, v) for u, v in flow) or 1
@@ -90,14 +90,14 @@ def motion(shot, size):
 
 
 def scene_flow(shot, size):
-    """Red, green and blue by the way along X, Y and Z, of the fastest pixel at most."""
+    """Red, green and blue are displacement along X, Y and Z relative to the fastest pixel."""
     planes = exr.read(Path(f"{shot}_scene_flow.exr"))
     most = max(abs(value) for name in "XYZ" for value in planes[name]) or 1
     return bytes(round(127.5 + 127.5 * value / most) for xyz in zip(planes["X"], planes["Y"], planes["Z"]) for value in xyz)
 
 
 def boxes(shot, size):
-    """Rectangles around what is seen of each object, but for what fills the picture."""
+    """Rectangles around the visible part of each object, except objects that fill the picture."""
     out = bytearray(pixels.raw(f"{shot}.png", "rgb24"))
     for thing in json.loads(Path(f"{shot}_boxes.json").read_text())["objects"]:
         if not thing["box_px"] or thing["pixels"] > 0.2 * size[0] * size[1]:
@@ -116,7 +116,7 @@ def thermal(shot, size):
 
 
 def events(folder, size):
-    """Brighter red, darker blue, on grey."""
+    """Red where brightness rises, blue where it falls, on grey."""
     out = bytearray([90] * 3 * size[0] * size[1])
     with open(folder / "events.csv") as file:
         for row in csv.DictReader(file):
@@ -126,7 +126,7 @@ def events(folder, size):
 
 
 def signals(folder, name, size, axis):
-    """Over time the value that changes most: of the sensor of this name white, over that of its namesake NAME_… red."""
+    """Plots the component that changes most: white for the sensor NAME, red for its noisy twin NAME_…."""
     tables = {path.stem: [[float(x) for x in row[2:]] for row in list(csv.reader(open(path)))[1:]] for path in sorted(folder.glob(f"sensors/{name}*.csv"))}
     first = 2                       # time, delivery, then the values
     column = max(range(first, len(tables[name][0])), key=lambda k: max(row[k] for row in tables[name]) - min(row[k] for row in tables[name]))
