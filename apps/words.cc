@@ -16,6 +16,7 @@ const std::vector<std::pair<std::string, std::string>> kScriptCommands = {
     {"bench", "Measure against peers and limits"},
     {"mitsuba", "Judge the path tier by Mitsuba 3"},
     {"gallery", "Make the pictures of docs/gallery"},
+    {"docs", "Build the documentation site in build/site"},
     {"pack", "Bundle the program for a machine with an NVIDIA card"},
     {"python", "Start Python with the module gloam"},
     {"wheel", "Make a Python wheel that carries every library it needs"},

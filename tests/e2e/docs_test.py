@@ -14,7 +14,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
 # The tests and the benches themselves: this test is part of the first, the others take an hour.
-NOT_HERE = re.compile(r"^(\./gloam (test|bench|mitsuba|gallery|pack|wheel)\b|\./gloam demo$|git clone|cd )")
+NOT_HERE = re.compile(r"^(\./gloam (test|bench|mitsuba|gallery|pack|wheel|docs)\b|\./gloam demo$|git clone|cd )")
 # Minutes of two cores, of code that other commands run too: only with GLOAM_TEST_FULL=1, as `./gloam test full` sets it.
 IN_FULL = re.compile(r"^\./gloam demo adversity --quick")
 NEEDS_A_CARD = re.compile(r"^GLOAM_PRESET=cuda ")  # and minutes of nvcc; gloam_cuda_test shows that it compiles

@@ -23,8 +23,8 @@ class VectorEnv(gym.vector.VectorEnv[Observation, Array, Array]):
 
     World i of reset(seed=s) is the Env of seed s + i, to the bit. Arrays that are returned are the caller's own.
     autoreset_mode: NEXT_STEP (the step after the last one resets), SAME_STEP (the last step does; the last
-    observation is info["final_obs"][i], its info info["final_info"]) or DISABLED (the caller resets, with
-    options={"reset_mask": mask}). Others as of Env.
+    observation is `info["final_obs"][i]`, its info `info["final_info"]`) or DISABLED (the caller resets, with
+    `options={"reset_mask": mask}`). Others as of Env.
     """
 
     metadata: dict[str, Any] = {"render_modes": ["rgb_array"], "render_fps": 10}
@@ -153,7 +153,7 @@ class VectorEnv(gym.vector.VectorEnv[Observation, Array, Array]):
         if self._is_done.any():
             raise gloam.UsageError(
                 f"the episodes of worlds {np.flatnonzero(self._is_done).tolist()} have ended: "
-                'reset(options={"reset_mask": mask}) them first'
+                'reset(`options={"reset_mask": mask}`) them first'
             )
         return np.zeros(self.num_envs, dtype=np.bool_)
 
