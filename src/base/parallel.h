@@ -1,5 +1,5 @@
 #pragma once
-// The one way to use many threads. The name labels the stage in profiles and metrics.
+// The only way to use many threads. The name documents the call; nothing reads it at run time.
 
 #include <cstdint>
 #include <functional>

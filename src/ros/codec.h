@@ -1,8 +1,9 @@
 #pragma once
 // Messages to CDR and back, derived from their lists of fields.
 //
-//   std::vector<uint8_t> bytes;                 // keep it: nothing is allocated once it is large
-//   enough encode(message, &bytes); Result<sensor_msgs::Imu> imu = decode<sensor_msgs::Imu>(bytes);
+// Encoding into the same vector again allocates only when a message is larger than all before:
+//   encode(message, &bytes);
+//   Result<sensor_msgs::Imu> imu = decode<sensor_msgs::Imu>(bytes);
 
 #include "base/check.h"
 #include "ros/message.h"

@@ -83,7 +83,7 @@ class Operator {
   std::optional<double> speed() const;
   Status reset(const ResetScope& scope = {});
 
-  // Entities: entities.cc, entity_states.cc
+  // Entities: entities.cc, entity.cc
   std::vector<Entity> entities() const;
   Result<Entity> find_entity(std::string_view name) const;
   /// Description, tags and kind as clients see them.

@@ -1,6 +1,6 @@
 #pragma once
 // A family of built-in metrics of one robot. A family is a file in this folder and a row of
-// builtin_list.cc.
+// kFamilies in robot_metric.cc.
 
 #include <memory>
 #include <span>

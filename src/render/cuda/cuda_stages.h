@@ -24,7 +24,7 @@ struct CudaJob {
   PathOptions path;
   uint32_t log2_samples = 0;
   bool has_motion = false;  ///< something moves while the shutter is open
-  bool centered = false;    ///< as in cpu/tile.h
+  bool centered = false;    ///< as in cpu/path/tile.h
 };
 
 class CudaStages {

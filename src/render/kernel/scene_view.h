@@ -85,7 +85,7 @@ struct MaterialLayers {
   float anisotropy = 0;
   float cos_rotation = 1, sin_rotation = 0;  ///< of the highlights' long axis from the tangent
   int pattern = -1, wear = -1;               ///< rows of SceneView::procedurals
-  float wetness = 0, porosity = 0.8f, dust = 0, snow = 0;  ///< as in kernel/weathering.h
+  float wetness = 0, porosity = 0.8f, dust = 0, snow = 0;  ///< as in surface/weathering.h
 };
 
 struct MaterialView {
@@ -165,7 +165,7 @@ struct LightGuide {
   /// Row-major: root mean square of what each light brings, over that of light_weight; above zero.
   DeviceSpan<const float> gain;
   DeviceSpan<const float> sky_visible;  ///< by row: fraction of the environment map's light
-  /// Cells along an edge of the octahedral map of directions (kernel/light_directions.h).
+  /// Cells along an edge of the octahedral map of directions (light/light_directions.h).
   static constexpr uint32_t kAcross = 16;
   static constexpr uint32_t kSums = kAcross * kAcross + 1;
   /// Row-major: running sums, 0 to 1, over the map's cells, of the light that arrives from each.

@@ -1,10 +1,10 @@
 #pragma once
-// The list of every option a scene file may hold: one line per field (key, member, unit, range).
-// The TOML reader, the overrides of the command line and later the schema and the manual all read
-// it.
+// The list of every option of a scene file: one line per field (key, member, unit, range).
+// The TOML reader and writer, the JSON schema, `gloam schema` and overrides on the command line are
+// derived from it.
 //
-// A Visitor is called once per field as visitor(key, member, FieldRule). Where they stand in the
-// file is the reader's business: `loc` members are not listed.
+// A Visitor is called once per field as visitor(key, member, FieldRule). Positions in
+// the file (`loc` members) are not listed; the reader fills them.
 
 #include <string>
 

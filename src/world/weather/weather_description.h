@@ -29,7 +29,7 @@ struct WeatherDescription {
   uint64_t seed = 0;
 
   float wetness_at(double time) const;
-  /// Depth as the amount of kernel/weathering.h, 0 … 1.
+  /// Depth as the amount of surface/weathering.h, 0 … 1.
   float snow_at(double time) const;
   bool covers_surfaces() const {
     return wetness_start > 0 || wetness_end > 0 || snow_start > 0 || snow_rate > 0;

@@ -108,10 +108,10 @@ class GasSolver {
 
   /// Called before each step in which something moved. `walls.grid` is create()'s.
   void set_walls(const GasWalls& walls);
-  /// `wind`: of the air outside of open sides [m/s], world.
-  /// Sets what the air does along `axis` at each face [m/s], in GasWalls' order: where it begins.
+  /// Sets the initial velocity of the air along `axis` at each face [m/s], in GasWalls' order.
   void set_velocity(int axis, std::span<const float> faces);
-  /// `emissions`: of each cell at most one.
+  /// `wind`: velocity of the air beyond the open sides [m/s], world axes. `emissions`: at most one
+  /// per cell.
   GasStep step(float dt, std::span<const GasSource> sources, Vec3f wind,
                std::span<const GasRotor> rotors = {}, std::span<const GasEmission> emissions = {});
 
