@@ -1,12 +1,28 @@
-"""Figures of the house: `python3 tests/house.py` prints files by folder, long files and functions, and comments without a noun."""
+"""Figures of the code base: `python3 tests/house.py` prints files by folder, long files and functions, and phrases to avoid.
+
+`python3 tests/house.py --phrases [TEXT]` lists each of these phrases with its line, in files with TEXT in their names.
+tests/language_rule.py limits their number.
+"""
+import ast
 import re
 import subprocess
+import sys
 from collections import Counter
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
 CODE = {".h", ".cc", ".cu", ".cuh"}
 BEGIN = re.compile(r"^(?:template <.*>\s*)?[A-Za-z_][^;{}]*\)[^;{}]*\{$|^[A-Za-z_].*\) (?:const |override |noexcept )*\{$")
+
+# Readers stumble over noun clauses that replace a noun, machines that speak, and words out of use.
+PHRASES = {
+    "noun clause": re.compile(r"\bwhat\b(?![^.|]*\?)|\bthat which\b|\b(?:of|than|as|by|with|for|from|to|in|on) those\b(?= of\b| that\b| who| which\b|[.,;:)])"
+                              r"|\bthose (?:of|that|who|whose|which)\b|\bwho(?:m?ever|so)\b|\bwhatever\b", re.I),
+    "machine that speaks": re.compile(r"\b(?:say|says|said|saying|tell|tells|told|telling|hear|hears|heard|hearing|obey|obeys|obeyed|obeying"
+                                      r"|refuse|refuses|refused|refusing|complains?|complained)\b", re.I),
+    "out of use": re.compile(r"\banew\b|\blest\b|\bwhose like\b|\b(?:go|goes|gone|going|went) on (?:from|with|in|at)\b|\bto the bit\b|\btheir kin\b"
+                             r"|\bthereof\b|\bwhereto\b|\bbut for\b", re.I),
+}
 
 
 def sources():
@@ -28,7 +44,65 @@ def functions(lines):
             start = None
 
 
+def documented():
+    """Files whose words users read: README.md, docs/, public headers, the Python package."""
+    listed = subprocess.run(["git", "ls-files", "--cached", "--others", "--exclude-standard", "README.md", "docs/*.md", "include/*.h", "python/gloam/*.py"],
+                            cwd=ROOT, capture_output=True, text=True, check=True).stdout.splitlines()
+    return [ROOT / name for name in sorted(listed) if (ROOT / name).exists()]
+
+
+def prose(path):
+    """Numbered lines of a file's prose: documents without code but with its comments, comments of headers, docstrings of Python."""
+    lines, kept = path.read_text().splitlines(), []
+    if path.suffix == ".py":
+        nodes = [node for node in ast.walk(ast.parse(path.read_text())) if isinstance(node, ast.Module | ast.ClassDef | ast.FunctionDef)]
+        strings = [node.body[0].value for node in nodes if ast.get_docstring(node)]
+        kept = [(number, lines[number - 1]) for string in strings for number in range(string.lineno, string.end_lineno + 1)]
+    elif path.suffix == ".h":
+        kept = [(number, found.group(1)) for number, line in enumerate(lines, 1) if (found := re.search(r"(?<!:)//+<?(.*)$", line))]
+    else:
+        in_code = False
+        for number, line in enumerate(lines, 1):
+            if line.lstrip().startswith("```"):
+                in_code = not in_code
+            elif not in_code:
+                kept.append((number, line))
+            elif found := re.search(r"(?:^|\s)(?:#|//) (.*)$", line):
+                kept.append((number, found.group(1)))
+    return [(number, re.sub(r"`[^`]*`|\"[^\"]*\"|\]\([^)]*\)", "`", line)) for number, line in sorted(kept)]
+
+
+def phrases(path):
+    """Kind, line and text of each phrase to avoid; one may run over the end of a line."""
+    lines = prose(path)
+    text = "\n".join(re.sub(r"^\s*", "", line) for _, line in lines)
+    for kind, pattern in PHRASES.items():
+        flowing = re.sub(r"\n", " ", text)
+        for found in pattern.finditer(flowing):
+            yield kind, lines[text.count("\n", 0, found.start())][0], found.group(0)
+
+
+def phrase_counts():
+    """Number of phrases to avoid by file, of files that have any."""
+    return Counter({str(path.relative_to(ROOT)): n for path in documented() if (n := sum(1 for _ in phrases(path)))})
+
+
+def list_phrases(text):
+    for path in documented():
+        name = str(path.relative_to(ROOT))
+        if text in name:
+            for kind, line, words in sorted(phrases(path), key=lambda found: found[1]):
+                print(f"{name}:{line}: {kind}: {words}")
+
+
 def main():
+    if sys.argv[1:2] == ["--phrases"]:
+        list_phrases("".join(sys.argv[2:3]))
+        return
+    counts = phrase_counts()
+    print(f"phrases to avoid in README.md, docs/, public headers and Python docstrings: {sum(counts.values())}")
+    for name, n in counts.most_common():
+        print(f"  {n} {name}")
     folders, long_files, long_functions, comments = Counter(), [], [], Counter()
     for path in sources():
         name = str(path.relative_to(ROOT))

@@ -354,8 +354,8 @@ def slow_units(tally, chosen):
 
 
 def rules(tally):
-    """What reading the source tells."""
-    for file in ("tests/folder_rule.py", "tests/extending.py", "tests/labels_test.py"):
+    """Rules that the source and the documents keep."""
+    for file in ("tests/folder_rule.py", "tests/comments_rule.py", "tests/language_rule.py", "tests/extending.py", "tests/labels_test.py"):
         python_tests(tally, file)
 
 
