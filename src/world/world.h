@@ -1,6 +1,6 @@
 #pragma once
-// The compiled World behind gloam::World. Immutable after compile. ARCHITECTURE.md lists the modules
-// that may see its MuJoCo types.
+// The compiled World behind gloam::World. Immutable after compile. ARCHITECTURE.md lists the
+// modules that may see its MuJoCo types.
 
 #include <mujoco/mujoco.h>
 

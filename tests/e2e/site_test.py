@@ -8,6 +8,7 @@ import unittest
 from html.parser import HTMLParser
 from pathlib import Path
 from urllib.parse import unquote, urlsplit
+from urllib.request import urlopen
 
 from e2e.support import ROOT
 
@@ -40,10 +41,23 @@ class Site(unittest.TestCase):
         scratch = tempfile.TemporaryDirectory(prefix="site_test_", dir=ROOT / "build")
         cls.addClassCleanup(scratch.cleanup)
         cls.site = Path(scratch.name) / "site"
-        done = subprocess.run([ROOT / "gloam", "docs", "--out", cls.site], stdin=subprocess.DEVNULL, capture_output=True, text=True)
-        if done.returncode != 0:
-            raise AssertionError(done.stderr)
+        process = subprocess.Popen([ROOT / "gloam", "docs", "--out", cls.site, "--serve", "--port", "0"], stdin=subprocess.DEVNULL,
+                                   stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+        cls.addClassCleanup(process.communicate)
+        cls.addClassCleanup(process.terminate)
+        output, cls.address = "", None
+        while cls.address is None:
+            line = process.stdout.readline()
+            output += line
+            if found := re.search(r"http://127\.0\.0\.1:\d+/", line):
+                cls.address = found.group(0)
+            elif not line:
+                raise AssertionError(output)
         cls.pages = {path.resolve(): Page(path) for path in cls.site.rglob("*.html") if path.name != "404.html"}
+
+    def test_it_is_served_on_this_machine(self):
+        with urlopen(self.address + "docs/light.html") as response:
+            self.assertIn(b"<title>Light", response.read())
 
     def test_every_link_and_anchor_resolves(self):
         bad = []

@@ -55,8 +55,15 @@ def build(pages):
         raise ValueError("the documentation site has faults:\n" + re.sub(r"^INFO .*\n", "", done.stdout + done.stderr, flags=re.M))
 
 
+class Handler(http.server.SimpleHTTPRequestHandler):
+    extensions_map = http.server.SimpleHTTPRequestHandler.extensions_map | {".toml": "text/plain; charset=utf-8"}  # shown, not downloaded
+
+    def log_message(self, *_):
+        """Requests are not logged."""
+
+
 def serve(site, port):
-    handler = functools.partial(http.server.SimpleHTTPRequestHandler, directory=site)
+    handler = functools.partial(Handler, directory=site)
     with http.server.ThreadingHTTPServer(("127.0.0.1", port), handler) as server:
         say(f"http://127.0.0.1:{server.server_address[1]}/ (Ctrl-C ends)")
         server.serve_forever()

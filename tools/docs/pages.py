@@ -49,8 +49,11 @@ def copy_page(path, folder):
     target = folder / path.relative_to(ROOT)
     target.parent.mkdir(parents=True, exist_ok=True)
     text = path.read_text()
-    wide = "---\nhide: [toc]\n---\n" if path.parent.name == "gallery" else ""
-    target.write_text(wide + for_site(text))
+    head = ""
+    if path.parent.name == "gallery":  # wide pages, which the search tells apart from guides of the same name
+        head = "---\ntitle: \"Gallery: " + re.search(r"^# (.*)$", text, re.M).group(1) + "\"\nhide: [toc]\n---\n"
+        head = head.replace("Gallery: Gallery", "Gallery")
+    target.write_text(head + for_site(text))
     for link in LINK.findall(text):
         file = (path.parent / link).resolve()
         if "://" not in link and file.is_file() and file.suffix != ".md" and file.is_relative_to(ROOT):
