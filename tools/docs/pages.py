@@ -48,13 +48,11 @@ def copy_page(path, folder):
     """Copies a page and the files, other than pages, that it links to."""
     target = folder / path.relative_to(ROOT)
     target.parent.mkdir(parents=True, exist_ok=True)
-    text = path.read_text()
-    head = ""
-    if path.parent.name == "gallery":  # wide pages, which the search tells apart from guides of the same name
-        head = "---\ntitle: \"Gallery: " + re.search(r"^# (.*)$", text, re.M).group(1) + "\"\nhide: [toc]\n---\n"
-        head = head.replace("Gallery: Gallery", "Gallery")
-    target.write_text(head + for_site(text))
-    for link in LINK.findall(text):
+    text = source = path.read_text()
+    if path.parent.name == "gallery":  # wide pages, whose titles differ from those of guides in the search
+        text = "---\nhide: [toc]\n---\n" + re.sub(r"\A# (?!Gallery)", "# Gallery: ", text)
+    target.write_text(for_site(text))
+    for link in LINK.findall(source):
         file = (path.parent / link).resolve()
         if "://" not in link and file.is_file() and file.suffix != ".md" and file.is_relative_to(ROOT):
             copy = folder / file.relative_to(ROOT)
