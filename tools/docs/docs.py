@@ -30,8 +30,8 @@ def say(text):
 
 
 def install():
-    """Installs the pinned packages into .venv/docs, unless it holds this very list already."""
-    stamp, version = ENVIRONMENT / ".stamp", hashlib.sha256(REQUIREMENTS.read_bytes()).hexdigest()
+    """Installs the pinned packages into .venv/docs, unless this Python has installed the same list there before."""
+    stamp, version = ENVIRONMENT / ".stamp", hashlib.sha256(REQUIREMENTS.read_bytes() + sys.version.encode()).hexdigest()
     if stamp.exists() and stamp.read_text() == version:
         return
     say("installing the pinned packages of the documentation site (about 30 MB)")
