@@ -148,12 +148,18 @@ class Headers(unittest.TestCase):
         self.assertEqual([(member.code, member.text) for member in kind.members], [("kA", "first"), ("kLonger", "second,\nand more")])
 
     def test_of_classes_and_templates(self):
-        _, declarations = self.parse("/// A value.\ntemplate <class T>\nclass Result {\n public:\n  Result(T v) : v_(v) {}\n\n private:\n  T v_;\n};\n"
+        _, declarations = self.parse("/// A value.\ntemplate <class T>\nclass Result {\n"
+                                     " public:\n  Result(T v) : v_(v) {}\n\n private:\n  T v_;\n};\n"
                                      "/// Doubles.\n"
                                      "int twice(int a,\n          int b = 2);\ninline constexpr int kMost = 3;  ///< [1]")
         self.assertEqual([d.name for d in declarations], ["Result", "twice", "kMost"])
         self.assertEqual([member.code for member in declarations[0].members], ["Result(T v);"])
         self.assertEqual(declarations[2].text, "[1]")
+
+    def test_details_are_left_out(self):
+        _, declarations = self.parse("struct Other;  // elsewhere\nstatic_assert(sizeof(int) == 4);\n#define HELPER(a) a\n"
+                                     "/// Tries.\n#define TRY(a) \\\n  HELPER(a)\ninline constexpr auto kSizes = [] {\n  return f(1);\n}();")
+        self.assertEqual([(d.name, d.text) for d in declarations], [("TRY", "Tries."), ("kSizes", "")])
 
     def test_every_declaration_of_the_public_headers_has_a_name(self):
         import headers

@@ -85,7 +85,7 @@ class Pages:
             page = folder / f"{self.page_of(header)}.md"
             page.parent.mkdir(parents=True, exist_ok=True)
             page.write_text(self.text(header))
-            first = re.split(r"(?<=[.:])\s", introduction.replace("\n", " "), maxsplit=1)[0].rstrip(":")
+            first = re.split(r"(?<=\.)\s", introduction.replace("\n", " "), maxsplit=1)[0]
             rows.append(f"* [{header}]({self.page_of(header)}.md): {html.escape(first, quote=False)}")
             entry = {header.split("/")[-1]: f"api/cpp/{self.page_of(header)}.md"}
             (scene if "/scene/" in header else nav).append(entry)

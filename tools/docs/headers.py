@@ -7,8 +7,10 @@ import re
 from dataclasses import dataclass, field
 
 TYPE = re.compile(r"^(?:template <.*?>\s*)?(?:struct|class|union|enum class|enum)\s+(?:\[\[\w+\]\]\s+)?(\w+)[^;()]*\{")
+NAMES = [r"^#define (\w+)", r"^using (?:enum )?(\w+)", r"^[^(]*\bconstexpr [^(]*?(\w+) = ", r"(operator[^\w\s(]+|~?\w+)\(",
+         r"(\w+)(?: = |\[|;|$)"]
 ACCESS = re.compile(r"^(public|protected|private):$")
-SKIPPED = re.compile(r"^(#(include|pragma|if|endif)|namespace|\}  // namespace|(struct|class) \w+;$)")
+SKIPPED = re.compile(r"^(#(include|pragma|if|endif)|namespace|\}  // namespace|(struct|class) \w+;)")
 
 
 @dataclass
@@ -29,7 +31,7 @@ class Declaration:
         if self.type_name:
             return self.type_name
         code = re.sub(r"^template <.*?>\n?\s*", "", self.code, flags=re.S)
-        for pattern in (r"^#define (\w+)", r"^using (?:enum )?(\w+)", r"(operator[^\w\s(]+|~?\w+)\(", r"(\w+)(?: = |\[|;|$)"):
+        for pattern in NAMES:
             if found := re.search(pattern, code):
                 return found.group(1)
         return code.split("\n")[0]
@@ -113,7 +115,8 @@ class Parser:
             text = [*text, trailing_comment(self.lines[self.at])]
             self.at += 1
         self.text = []
-        if not self.hidden:
+        is_detail = code.lstrip().startswith("static_assert") or (is_macro and not text)
+        if not self.hidden and not is_detail:
             self.found.append(self.made_of(code, [line for line in text if line], first))
 
     def made_of(self, code, text, first):
