@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cstdio>
 
-#include "gloam/outputs.h"
+#include "gloam/output_names.h"
 #include "gloam/program.h"
 #include "print.h"
 

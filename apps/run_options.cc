@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "gloam/outputs.h"
+#include "gloam/output_names.h"
 #include "gloam/program.h"
 
 namespace gloam::cli {

@@ -14,7 +14,7 @@
 #include "base/hash.h"
 #include "base/log.h"
 #include "base/memory.h"
-#include "gloam/outputs.h"
+#include "gloam/output_names.h"
 #include "gloam/program.h"
 #include "gloam/run.h"
 #include "record/recorder.h"

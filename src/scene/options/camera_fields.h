@@ -2,7 +2,7 @@
 // Fields of [[camera]], its lens, [[stereo]] and [[rgbd]]. A part of
 // scene/options/option_fields.h.
 
-#include "gloam/outputs.h"
+#include "gloam/output_names.h"
 #include "gloam/scene/camera.h"
 #include "gloam/scene/sensor.h"
 #include "scene/options/field_rule.h"

@@ -2,7 +2,7 @@
 // Fields of [sim], [render], [record] and [[randomize]]. A part of
 // scene/options/option_fields.h.
 
-#include "gloam/outputs.h"
+#include "gloam/output_names.h"
 #include "gloam/scene/run.h"
 #include "scene/options/field_rule.h"
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "base/text.h"
+#include "gloam/output_names.h"
 
 namespace gloam {
 

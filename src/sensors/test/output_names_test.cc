@@ -2,7 +2,7 @@
 
 #include <gmock/gmock.h>
 
-#include "gloam/outputs.h"
+#include "gloam/output_names.h"
 #include "sensors/camera/camera_channels.h"
 
 namespace gloam {

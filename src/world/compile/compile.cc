@@ -8,7 +8,7 @@
 #include "base/memory.h"
 #include "base/text.h"
 #include "geometry/mesh/model_file.h"
-#include "gloam/outputs.h"
+#include "gloam/output_names.h"
 #include "places/generators.h"
 #include "places/writer/place_writer.h"
 #include "scene/adversity.h"
