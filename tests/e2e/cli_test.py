@@ -84,8 +84,8 @@ class Cache(ProgramTest):
         self.assertIn(str(self.folder / "cache" / "visuals"), text)
         self.assertIn("1 entry,", text)
         data = json.loads(self.gloam("cache", "--json").stdout)
-        self.assertEqual([kind["name"] for kind in data["kinds"]], ["models", "visuals", "bvhs", "hulls"])
-        self.assertEqual([kind["entries"] for kind in data["kinds"]], [0, 1, 0, 0])
+        self.assertEqual([kind["name"] for kind in data["kinds"]], ["models", "visuals", "bvhs", "hulls", "scenes"])
+        self.assertEqual([kind["entries"] for kind in data["kinds"]], [0, 1, 0, 0, 0])
         self.assertEqual(data["bytes"], data["kinds"][1]["bytes"])
         self.assertEqual(data["limit_bytes"], 10 << 30)
         self.assertIsNone(data["kinds"][0]["newest_use"])
@@ -93,7 +93,7 @@ class Cache(ProgramTest):
         self.gloam("cache", "clear", "models")
         self.assertEqual(json.loads(self.gloam("cache", "--json").stdout)["kinds"][1]["entries"], 1)
         removed = json.loads(self.gloam("cache", "clear", "--json").stdout)["removed"]
-        self.assertEqual([kind["entries"] for kind in removed], [0, 1, 0, 0])
+        self.assertEqual([kind["entries"] for kind in removed], [0, 1, 0, 0, 0])
         self.assertEqual(list((self.folder / "cache/visuals").iterdir()), [theirs])
 
     def test_without_room_nothing_is_kept(self):
