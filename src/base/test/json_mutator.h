@@ -53,8 +53,9 @@ class JsonMutator {
         break;
       case 1: {  // its value under another key of the document
         const Json value = at.value();
+        const std::string other = other_key(others, key);  // `others` may lie in the value
         object->erase(key);
-        (*object)[other_key(others, key)] = value;
+        (*object)[other] = value;
         break;
       }
       case 2:  // one more
