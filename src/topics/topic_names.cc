@@ -6,6 +6,7 @@
 #include <map>
 #include <set>
 #include <string>
+#include <string_view>
 
 #include "topics/ros_values.h"
 
@@ -50,7 +51,9 @@ struct ElementTopics {
   /// "/front" of camera "front"; of topics that do not lie below their element's name the whole
   /// name of the first.
   std::string space() const {
-    const std::string below = "/" + topic_token(source.substr(source.find(' ') + 1));
+    constexpr std::string_view kMocap = "mocap body ";
+    const size_t kind = source.starts_with(kMocap) ? kMocap.size() : source.find(' ') + 1;
+    const std::string below = "/" + topic_token(source.substr(kind));
     const bool is_below = std::ranges::all_of(topics, [&below](const Topic* topic) {
       return topic->info.name == below || topic->info.name.starts_with(below + "/");
     });

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/hash.h"
+#include "gloam/controller.h"
 #include "gloam/log.h"
 #include "mcap/mcap_reader.h"
 #include "mcap/mcap_writer.h"
@@ -48,8 +49,19 @@ file = "mover.xml"
 position = [3, 0, 0]
 [robot.controller]
 type = "joint_position"
+[[robot]]
+name = "led"
+file = "mover.xml"
+position = [0, 3, 0]
+[robot.controller]
+type = "idle_in_logs"
 goals = [{time = 0.02, vx = 0.4}, {time = 0.04, vx = 0.1, yaw_rate = 0.3}]
 )";
+
+struct Idle final : Controller {
+  void reset(const mjModel_*, const mjData_*) override {}
+  void control(const ControlInputs&) override {}
+};
 
 struct Logged {
   double time = 0;  // log time [s]
@@ -60,6 +72,10 @@ struct Logged {
 class LogContents : public testing::Test {
  protected:
   LogContents() {
+    // Each test of the process but the first finds it registered.
+    static_cast<void>(register_controller("idle_in_logs", [](const ControllerRequest&) {
+      return Result<std::unique_ptr<Controller>>(std::make_unique<Idle>());
+    }));
     folder_.write("mover.xml", kMover);
     folder_.write("s.toml", kLoggedScene);
     file_ = folder_.path() / "run.mcap";
@@ -169,7 +185,7 @@ TEST_F(LogContents, GoalsOfTheSceneAreCommandsLikeAnyOthers) {
   step(30);
   finish();
   auto all = read();
-  const auto goals = decoded<geometry_msgs::Twist>(all["/held/cmd_vel"]);
+  const auto goals = decoded<geometry_msgs::Twist>(all["/led/cmd_vel"]);
   ASSERT_EQ(goals.size(), 2u);
   EXPECT_NEAR(goals[0].first, 0.02, 1e-9);
   EXPECT_EQ(goals[0].second.linear.x, 0.4);

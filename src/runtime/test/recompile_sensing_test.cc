@@ -250,9 +250,9 @@ TEST(RecompileSensing, ASensorThatIsGoneIsToldOfAndTheOthersGoOn) {
   EXPECT_NE(lost[0].find("'rate'"), std::string::npos) << lost[0];
   EXPECT_NE(lost[1].find("'angle'"), std::string::npos) << lost[1];
   EXPECT_EQ(lost[2], "the end: " + lost[1]);
-  EXPECT_EQ(steps["rate"].back(), 20) << "the last in its World";
-  EXPECT_EQ(steps["angle"].back(), 40);
-  EXPECT_EQ(steps["angle"].size(), 41u) << "none twice, none left out";
+  EXPECT_EQ(steps["rate"].back(), 19) << "the last that its World has computed";
+  EXPECT_EQ(steps["angle"].back(), 39);
+  EXPECT_EQ(steps["angle"].size(), 40u) << "none twice, none left out";
   EXPECT_FALSE(stream->status().ok());
 }
 
