@@ -98,7 +98,6 @@ Status LiveCamera::follow(const std::shared_ptr<const CompiledWorld>& world) {
     if (request_.required) lead_.emplace(events);
     sensor->share_events(std::move(events), request_.required);
   }
-  if (!request_.required) sensor->set_progress([this](double) { return !is_closing_; });
   const std::lock_guard lock(mutex_);
   sensor_ = std::move(sensor);
   shared_ = std::move(shared);
@@ -170,7 +169,6 @@ Status LiveCamera::capture(const SnapshotWindow& window) {
                                 continuous ? previous_ : now, index);
   part_ = 0;
   if (frame == nullptr || thread_.is_abandoned()) return {};
-  if (frame == nullptr) return {};  // it is being closed
   const double time = frame->time;
   on_frame_(std::move(frame));
   account_->add_message(time);

@@ -25,8 +25,6 @@ class LiveCamera final : public CameraStream {
                                                   const CameraRequest& request,
                                                   FrameCallback on_frame,
                                                   const ExposureMeters& meters);
-  /// A picture that nobody requires ends unfinished.
-  ~LiveCamera() override { is_closing_ = true; }
   void set_pose(const Pose& X_WC) override;
   Pose pose() const override;
   void refresh() override;
@@ -74,7 +72,7 @@ class LiveCamera final : public CameraStream {
   bool has_previous_ = false;
   bool previous_is_still_ = false;  ///< it was an instant by itself, not a window
   mutable std::mutex mutex_;        // guards sensor_ against set_pose() and pose()
-  std::atomic<bool> refresh_wanted_{false}, is_closing_{false};
+  std::atomic<bool> refresh_wanted_{false};
   std::atomic<double> part_{0};  // of the picture that is being made, 0 … 1
   StreamThread thread_;          // last: it uses the others
 };
