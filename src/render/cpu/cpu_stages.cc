@@ -33,10 +33,12 @@ int64_t CpuStages::begin(const Film& film) {
   return static_cast<int64_t>(tiles_.size());
 }
 
-RenderStats CpuStages::render(const Job& all) {
-  const RenderSettings& settings = all.settings;
+RenderStats CpuStages::render(Job& job) {
+  const RenderSettings& settings = job.settings;
   const bool adaptive = settings.error > 0;
   const int64_t count = begin(*job.film);
+  RenderWatch watch(settings.progress, count, *job.slices);
+  job.watch = &watch;
   const AdaptivePlan plan = adaptive ? look(job) : AdaptivePlan();
   RenderWatch watch(settings.progress, count, *job.slices);
   for_tiles(job, count, [&](int64_t i) {
@@ -52,6 +54,7 @@ RenderStats CpuStages::render(const Job& all) {
     total.unreached += tile.unreached;
   }
   total.finished = !watch.stopped();
+  job.watch = nullptr;
   return total;
 }
 
