@@ -12,21 +12,34 @@ void Inbox::close() {
           "callbacks have to return; give long work to a thread of your own");
 }
 
-void Inbox::leave_behind() {
-  static_cast<void>(stream_.release());
-  is_left_behind_ = true;
+bool Inbox::is_stuck() const {
+  return is_in_callback_ && std::chrono::steady_clock::now() - began_.load() > kPatience;
 }
 
+// The stream ends on a thread of its own: it waits for the callbacks of what has come, of which one
+// may never return.
 bool Inbox::try_close() {
   if (stream_ == nullptr) return !is_left_behind_;
-  refuse_callbacks();
-  if (!wait_patiently([this] { return !is_in_callback_; })) {
-    leave_behind();
+  const auto has_ended = std::make_shared<std::atomic<bool>>(false);
+  std::thread closer([stream = std::exchange(stream_, nullptr).release(), has_ended] {
+    delete stream;
+    *has_ended = true;
+  });
+  std::exception_ptr interrupted;  // Ctrl-C
+  try {
+    wait_patiently([&] { return *has_ended || is_stuck(); }, std::chrono::years(1));
+  } catch (...) {
+    interrupted = std::current_exception();
+  }
+  if (!*has_ended) {
+    is_closing_ = is_left_behind_ = true;
+    closer.detach();
+    if (interrupted) std::rethrow_exception(interrupted);
     return false;
   }
-  std::unique_ptr<Stream> stream = std::move(stream_);
-  const nb::gil_scoped_release released;  // its last callback may wait for the interpreter
-  stream.reset();
+  const nb::gil_scoped_release released;
+  closer.join();
+  if (interrupted) std::rethrow_exception(interrupted);
   return true;
 }
 
@@ -49,6 +62,7 @@ void Inbox::put(Waiting message) {
   if (is_closing_ || !callback.is_valid() || callback.is_none()) return;
   const CallbackScope inside;
   callback_thread_ = std::this_thread::get_id();
+  began_ = std::chrono::steady_clock::now();
   is_in_callback_ = true;
   try {
     callback(message.make());

@@ -40,10 +40,8 @@ class Inbox {
   bool try_close();
   const std::string& name() const { return name_; }
   bool is_in_callback() const { return is_in_callback_; }
-  /// From now on no callback begins.
-  void refuse_callbacks() { is_closing_ = true; }
-  /// Keeps the stream and this for a callback that may return one day.
-  void leave_behind();
+  /// Whether a callback has lasted longer than kPatience.
+  bool is_stuck() const;
   Stream& stream();
   bool is_open() const { return stream_ != nullptr; }
 
@@ -74,6 +72,7 @@ class Inbox {
   std::atomic<bool> is_in_callback_{false}, is_closing_{false};
   bool is_left_behind_ = false;
   std::atomic<std::thread::id> callback_thread_{};
+  std::atomic<std::chrono::steady_clock::time_point> began_{};
   std::atomic<int64_t> lost_{0};
   int64_t next_from_ = 0;
 };

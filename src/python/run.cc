@@ -55,17 +55,8 @@ std::unique_lock<std::timed_mutex> Run::turn() {
   return lock;
 }
 
-// What keeps it from ending: a function of Python's that has not returned; "" = nothing.
-std::string Run::stuck() const {
-  if (is_in_hook_) return "a step hook";
-  for (const auto& inbox : open_inboxes())
-    if (inbox->is_in_callback()) return "the callback of " + inbox->name();
-  return {};
-}
-
 void Run::leave_behind(const std::string& what) {
   is_closed_ = true;
-  for (const auto& inbox : open_inboxes()) inbox->leave_behind();
   raise("StuckError",
         what + " has not returned within " + std::to_string(kPatience.count()) +
             " s: its thread and the simulation's memory are left behind",
@@ -84,13 +75,15 @@ void Run::close() {
           "call it from another thread, or use commands");
   simulation_->request_stop();  // a thread that steps it ends
   has_hook_ = false;
-  for (const auto& inbox : open_inboxes()) inbox->refuse_callbacks();
-  if (!wait_patiently([this] { return stuck().empty(); })) leave_behind(stuck());
+  if (!wait_patiently([this] { return !is_in_hook_; })) leave_behind("a step hook");
   std::unique_lock lock(turn_, std::defer_lock);
   // A thread that steps has been stopped; a recompile takes the time that it takes.
   wait_patiently([&] { return lock.try_lock(); }, std::chrono::years(1));
   if (is_closed_) return;
-  for (const auto& inbox : open_inboxes()) inbox->close();
+  std::string stuck;
+  for (const auto& inbox : open_inboxes())
+    if (!inbox->try_close()) stuck = "the callback of " + inbox->name();
+  if (!stuck.empty()) leave_behind(stuck);
   is_closed_ = true;
   std::unique_ptr<Simulation> simulation = std::move(simulation_);
   const nb::gil_scoped_release released;

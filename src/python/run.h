@@ -78,7 +78,6 @@ class Run {
   void look_at_state();
   void look_anew();
   void call_hook(const mjModel_* model, mjData_* data);
-  std::string stuck() const;
   void leave_behind(const std::string& what);
   std::vector<std::shared_ptr<Inbox>> open_inboxes() const;
   void empty_inboxes();

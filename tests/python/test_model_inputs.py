@@ -146,7 +146,7 @@ def test_dynamics_per_episode_without_a_recompile(tmp_path: Path) -> None:
 def test_environments_draw_dynamics_for_each_episode(tmp_path: Path) -> None:
     pytest.importorskip("gymnasium")
     scene = {"robot": [{"name": "go", "file": ball_file(tmp_path).name}]}
-    env = gloam.make_env(gloam.Scene.from_dict(scene, tmp_path), {"joints": {"joints": "go"}}, {"controls": "go", "low": [-1], "high": [1]},
+    env = gloam.make_env(gloam.Scene.from_dict(scene, tmp_path), {"where": {"sensor": "go/where"}}, {"controls": "go", "low": [-1], "high": [1]},
                          dynamics={"mass": (0.5, 2.0), "friction": (0.5, 1.5)})
     masses = []
     for seed in (1, None, 1):
@@ -155,7 +155,7 @@ def test_environments_draw_dynamics_for_each_episode(tmp_path: Path) -> None:
     assert np.array_equal(masses[0], masses[2]) and not np.array_equal(masses[0], masses[1])
     assert 0.5 <= masses[0][1] <= 2.0 and masses[0][1] != 1.0
     with pytest.raises(ValueError, match="dynamics"):
-        gloam.make_env(gloam.Scene.from_dict(scene, tmp_path), {"joints": {"joints": "go"}}, {"controls": "go", "low": [-1], "high": [1]},
+        gloam.make_env(gloam.Scene.from_dict(scene, tmp_path), {"where": {"sensor": "go/where"}}, {"controls": "go", "low": [-1], "high": [1]},
                        dynamics={"mas": (0.5, 2.0)})
 
 
