@@ -11,7 +11,7 @@ inline constexpr std::array<std::string_view, 4> kAgentKinds = {"person", "cart"
                                                                 "car"};
 inline constexpr std::array<std::string_view, 5> kAgentBehaviors = {"stand", "wander", "route",
                                                                     "spline", "tree"};
-inline constexpr FieldRule kAgentSpeed{.unit = "m/s", .min = 0, .max = 30, .open = true};
+inline constexpr FieldRule kAgentSpeed{.unit = "m/s", .min = 0, .max = 60, .open = true};
 
 template <class Visitor>
 void visit_fields(Visitor& v, NavigationOptions& o) {

@@ -214,8 +214,9 @@ class Brain final : public TreeHost {
     const Vec3d to = spline.at(motion_.way, &direction);
     agent_.intent.mode = AgentIntent::Mode::kSpline;
     agent_.intent.speed = speed;
-    agent_.intent.velocity =
-        shortened(flat(direction) * speed + flat(to - motion_.p) * 1.5, 1.4 * speed);
+    // People hurry after the point where they should be; vehicles keep to their speed.
+    const double most = agent_.description->kind == AgentKind::kPerson ? 1.4 * speed : speed;
+    agent_.intent.velocity = shortened(flat(direction) * speed + flat(to - motion_.p) * 1.5, most);
   }
 
   void note_progress() {
