@@ -452,7 +452,7 @@ TEST_F(Ros2Parameters, AreReadAndSet) {
   EXPECT_FALSE(set("no.such.option", seed));
   EXPECT_EQ(get("no.such.option").type, rcl_interfaces::ParameterType::PARAMETER_NOT_SET);
   const std::lock_guard lock(mutex_);
-  ASSERT_EQ(events_.size(), 7u);
+  ASSERT_EQ(events_.size(), 9u);
   EXPECT_EQ(events_.back().node, "/sim/gloam");
   EXPECT_EQ(events_.back().changed_parameters.at(0).name, "robot.arm.position");
 }
@@ -482,7 +482,7 @@ TEST_F(Ros2Parameters, AreListedAndDescribed) {
         .result;
   };
   EXPECT_GT(list({}, 0).names.size(), 30u);
-  EXPECT_EQ(list({}, 1).names.size(), 3u);
+  EXPECT_EQ(list({}, 1).names.size(), 4u);
   EXPECT_GT(list({"live"}, 0).names.size(), 4u);
   for (const std::string& name : list({"prop.seat"}, 0).names)
     EXPECT_TRUE(name.starts_with("prop.seat.")) << name;

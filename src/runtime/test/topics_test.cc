@@ -396,7 +396,7 @@ TEST_F(TopicInputs, TrajectoriesAreCutIntoGoalsAtTheirTimes) {
 
 TEST_F(TopicInputs, TrajectoriesAndCommandsOfJointsAreChecked) {
   trajectory_msgs::JointTrajectory good;
-  good.joint_names = {"hinge"};
+  good.joint_names = {"lift"};
   good.points.resize(1);
   good.points[0].positions = {0.2};
   good.points[0].time_from_start.sec = 1;
@@ -407,9 +407,9 @@ TEST_F(TopicInputs, TrajectoriesAndCommandsOfJointsAreChecked) {
     return !publish(name, way).ok();
   };
   using Way = trajectory_msgs::JointTrajectory;
-  EXPECT_TRUE(refused([](Way& way) { way.joint_names = {"hinge", "hinge"}; }));
+  EXPECT_TRUE(refused([](Way& way) { way.joint_names = {"lift", "lift"}; }));
   EXPECT_TRUE(refused([](Way& way) {
-    way.joint_names = {"hinge", "hinge"};
+    way.joint_names = {"lift", "lift"};
     way.points[0].positions = {0.1, 0.2};
   }));
   EXPECT_TRUE(refused([](Way& way) { way.joint_names = {"knee"}; }));
@@ -424,7 +424,7 @@ TEST_F(TopicInputs, TrajectoriesAndCommandsOfJointsAreChecked) {
   EXPECT_TRUE(refused([](Way& way) { way.points[0].time_from_start.sec = 61; }));
   EXPECT_TRUE(publish(name, good).ok());
   sensor_msgs::JointState twice;
-  twice.name = {"hinge", "hinge"};
+  twice.name = {"lift", "lift"};
   twice.position = {0.1, 0.2};
   EXPECT_FALSE(publish("/cart/joint_command", twice).ok());
 }
