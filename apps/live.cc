@@ -113,7 +113,7 @@ int run_live(LiveRun run, const LiveCommand& command, EndOnInterrupt& starting) 
   if (page != nullptr) page->stop();
   int code = status.ok() ? 0 : fail(status.error());
   const SimulationStats stats = simulation.stats();
-  tell("{}", sensor_table(stats.sensors));
+  for (const std::string& line : sensor_table(stats.sensors)) tell("{}\n", line);
   if (log != nullptr) {
     if (const Status finished = log->finish(); !finished.ok()) code = fail(finished.error());
     tell("gloam: {}\n", run.log.file.string());

@@ -10,17 +10,17 @@
 
 namespace gloam::cli {
 
-std::string sensor_table(const std::vector<SensorCost>& sensors) {
+std::vector<std::string> sensor_table(const std::vector<SensorCost>& sensors) {
   if (sensors.empty()) return {};
-  std::string table =
-      fmt::format("  {:<32} {:>10} {:>11} {:>9} {:>8} {:>11} {:>11}\n", "stream", "wanted Hz",
-                  "achieved Hz", "messages", "dropped", "ms each", "ms waiting");
+  std::vector<std::string> lines = {fmt::format("  {:<32} {:>10} {:>11} {:>9} {:>8} {:>11} {:>11}",
+                                                "stream", "wanted Hz", "achieved Hz", "messages",
+                                                "dropped", "ms each", "ms waiting")};
   for (const SensorCost& s : sensors) {
     const std::string achieved = s.achieved > 0 ? fmt::format("{:.2f}", s.achieved) : "-";
-    table += fmt::format("  {:<32} {:>10.5g} {:>11} {:>9} {:>8} {:>11.3f} {:>11.3f}\n", s.name,
-                         s.rate, achieved, s.messages, s.dropped, s.wall_ms, s.waited_ms);
+    lines.push_back(fmt::format("  {:<32} {:>10.5g} {:>11} {:>9} {:>8} {:>11.3f} {:>11.3f}", s.name,
+                                s.rate, achieved, s.messages, s.dropped, s.wall_ms, s.waited_ms));
   }
-  return table;
+  return lines;
 }
 
 namespace {
@@ -66,7 +66,7 @@ int tell_of(const Result<RunReport>& report, const Globals& globals) {
   } else {
     say("simulated {:.3f} s in {:.1f} s ({:.2f} x real time), {} steps, state hash {:016x}\n",
         report->sim_time, report->wall_time, factor, report->steps, report->hash);
-    say("{}", sensor_table(report->sensors));
+    for (const std::string& line : sensor_table(report->sensors)) say("{}\n", line);
     if (!report->out.empty()) {
       const std::string pictures =
           report->frames > 0 ? fmt::format(" ({} pictures)", report->frames) : std::string();

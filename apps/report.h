@@ -5,8 +5,8 @@
 
 namespace gloam::cli {
 
-/// Costs and rates of streams as lines of text; "" for none.
-std::string sensor_table(const std::vector<SensorCost>& sensors);
+/// Costs and rates of streams as lines of text; none for none.
+std::vector<std::string> sensor_table(const std::vector<SensorCost>& sensors);
 /// Prints it; returns the exit code.
 int tell_of(const Result<RunReport>& report, const Globals& globals);
 int run_and_report(const World& world, const RunRequest& request, const Globals& globals);
