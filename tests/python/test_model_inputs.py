@@ -151,6 +151,7 @@ def test_environments_draw_dynamics_for_each_episode(tmp_path: Path) -> None:
     masses = []
     for seed in (1, None, 1):
         env.reset(seed=seed)
+        env.step(np.zeros(1))
         masses.append(env.sim.memory.array("body_mass").copy())
     assert np.array_equal(masses[0], masses[2]) and not np.array_equal(masses[0], masses[1])
     assert 0.5 <= masses[0][1] <= 2.0 and masses[0][1] != 1.0
