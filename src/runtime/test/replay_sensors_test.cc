@@ -45,7 +45,7 @@ body = "toy/box"
 time = 0.1
 velocity = [0.5, 0, 1]
 [[sensor]]
-name = "toy/acc"
+match = "toy/acc"
 noise = 0.02
 [[camera]]
 name = "eye"
