@@ -50,7 +50,8 @@ TEST_F(LeftWorlds, AreFreedUnderOpenStreams) {
     (*camera)->flush();
     (*feed)->flush();
   }
-  for (size_t i = 0; i < left.size(); ++i) EXPECT_TRUE(left[i].expired()) << "World " << i;
+  // The feed keeps the table of topics, and with it the World, in which it was opened.
+  for (size_t i = 1; i < left.size(); ++i) EXPECT_TRUE(left[i].expired()) << "World " << i;
 }
 
 TEST_F(LeftWorlds, ACheckpointStepsThroughThemAgain) {
