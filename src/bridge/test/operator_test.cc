@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <set>
 #include <thread>
 
 #include "bridge/test/lab.h"
@@ -246,11 +247,17 @@ TEST_F(OperatorTest, RefusesToSpawnByCause) {
   EXPECT_EQ(op().entities().size(), 6u);
 }
 
-// "a-b" and "a_b" would say the same topics.
-TEST_F(OperatorTest, RefusesNamesThatShareTopics) {
+// "a-b" and "a_b" have the same topics: those of the second get names of their own.
+TEST_F(OperatorTest, NamesThatShareTopicsAreNumbered) {
   ASSERT_TRUE(op().spawn({.name = "a-b", .uri = "arm.xml"}).ok());
-  EXPECT_EQ(op().spawn({.name = "a_b", .uri = "arm.xml"}).failure, SpawnFailure::kNameTaken);
-  EXPECT_TRUE(simulation_->topics().ok());
+  ASSERT_TRUE(op().spawn({.name = "a_b", .uri = "arm.xml"}).ok());
+  const auto topics = simulation_->topics();
+  ASSERT_TRUE(topics.ok());
+  std::set<std::string> names;
+  for (const TopicInfo& topic : *topics) EXPECT_TRUE(names.insert(topic.name).second) << topic.name;
+  EXPECT_TRUE(std::ranges::any_of(names, [](const std::string& name) {
+    return name.starts_with("/a_b") && name.find("_2") != std::string::npos;
+  }));
 }
 
 TEST_F(OperatorTest, ReadsNoFilesBeyondTheScenes) {

@@ -75,10 +75,11 @@ TEST_F(LeftWorlds, ACheckpointWhoseFilesHaveChangedSaysSo) {
   ASSERT_TRUE(first->step(10).ok());
   const Checkpoint checkpoint = *first->checkpoint();
   const auto second = simulate(other(9), {.pace = Pace::kLockstep});
-  folder_.write("flight.xml",
-                "<mujoco><worldbody><body name=\"ball\"><freejoint name=\"ball\"/><geom size=\".2\" "
-                "mass=\"1\"/></body></worldbody><keyframe><key name=\"go\" qpos=\"0 0 0 1 0 0 "
-                "0\"/></keyframe></mujoco>");
+  folder_.write(
+      "flight.xml",
+      "<mujoco><worldbody><body name=\"ball\"><freejoint name=\"ball\"/><geom size=\".2\" "
+      "mass=\"1\"/></body></worldbody><keyframe><key name=\"go\" qpos=\"0 0 0 1 0 0 "
+      "0\"/></keyframe></mujoco>");
   const Status restored = second->restore(checkpoint);
   ASSERT_FALSE(restored.ok());
   EXPECT_THAT(restored.error().to_string(), testing::HasSubstr("files have changed"));
