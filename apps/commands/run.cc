@@ -70,8 +70,8 @@ int run_world(const World& world, RunRequest request, const RunCommand& command,
     request.log.file = request.out / "run.mcap";
   request.overwrite = command.overwrite;
   request.cameras = command.options.cameras;
-  request.simulation.pace = command.live.pace_of(
-      scene, command.realtime || is_live ? Pace::kRealTime : Pace::kFast);
+  request.simulation.pace =
+      command.live.pace_of(scene, command.realtime || is_live ? Pace::kRealTime : Pace::kFast);
   request.simulation.speed = command.live.speed;
   if (!command.options.resolution.empty()) {
     if (const Status status =
@@ -152,7 +152,8 @@ void add_run(CLI::App& app, Globals& globals, Action& action) {
       "Examples:\n  gloam run examples/demo.toml --duration 3\n  gloam run robot.xml --out "
       "results/robot --camera front\n  gloam run examples/lidar.toml --duration 1 --output "
       "lidar,sensors,depth_exr\n  gloam run robot.urdf --view\n  gloam run examples/demo.toml "
-      "--ros2 --view\n  gloam run examples/demo.toml --zmq --pace sensors\n  gloam run run.mcap --at 2.5 "
+      "--ros2 --view\n  gloam run examples/demo.toml --zmq --pace sensors\n  gloam run run.mcap "
+      "--at 2.5 "
       "--duration 3 --out results/branch");
   sub->callback([&globals, &action, command] {
     action = [&globals, command] { return run(*command, globals); };

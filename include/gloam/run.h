@@ -46,7 +46,7 @@ struct RunReport {
   int64_t frames = 0;                ///< of all cameras, whose files are whole
   std::vector<std::string> written;  ///< the main result files, for people
   std::vector<std::pair<std::string, double>>
-      results;    ///< velocity errors, falls … as in summary.json
+      results;                      ///< velocity errors, falls … as in summary.json
   std::vector<SensorCost> sensors;  ///< costs and rates of what was recorded
   Status status;  ///< why it ended early, if it did; what was recorded is readable
   std::vector<std::string> notes = {};  ///< for people: "poses only, since …"
@@ -114,9 +114,8 @@ Result<std::vector<StillFiles>> write_stills(const World& world,
 
 /// Writes the channels of one frame as files beside each other: NAME.png, NAME_depth.png … Returns
 /// their paths.
-Result<std::vector<std::filesystem::path>> write_frame(const CameraFrame& frame,
-                                                       const std::filesystem::path& folder,
-                                                       const std::string& name,
-                                                       const std::vector<std::string>& outputs = {});
+Result<std::vector<std::filesystem::path>> write_frame(
+    const CameraFrame& frame, const std::filesystem::path& folder, const std::string& name,
+    const std::vector<std::string>& outputs = {});
 
 }  // namespace gloam

@@ -12,8 +12,8 @@ namespace gloam {
 
 class CpuStages {
  public:
-  /// Fills a film of the right size. The tier is kPath or kDirect. What `job` refers to is read anew
-  /// by each tile: RenderSlices change it in place.
+  /// Fills a film of the right size. The tier is kPath or kDirect. What `job` refers to is read
+  /// anew by each tile: RenderSlices change it in place.
   RenderStats render(Job& job);
   /// The exact channels alone, of any tier.
   void render_exact_channels(const Job& job);

@@ -56,8 +56,7 @@ TEST_F(Strips, AreLabelledWithTheTimesOfTheirPictures) {
   const auto made = strips({run("a", {{0, 0}, {1, 0.333}, {2, 0.667}, {3, 1}})}, 6);
   ASSERT_EQ(made.size(), 1u);
   EXPECT_THAT(made[0].instants, ElementsAre(0, 0.333, 0.667, 1)) << "each picture once";
-  for (size_t i = 0; i < 4; ++i)
-    EXPECT_EQ(made[0].rows[0].pictures[i].time, made[0].instants[i]);
+  for (size_t i = 0; i < 4; ++i) EXPECT_EQ(made[0].rows[0].pictures[i].time, made[0].instants[i]);
 }
 
 TEST_F(Strips, TellWherePicturesOfOtherRunsWereTakenAtOtherTimes) {

@@ -9,19 +9,18 @@
 namespace gloam {
 namespace {
 
-const LiveFieldId kDynamics[] = {
-    LiveFieldId::kGravity,      LiveFieldId::kWind,         LiveFieldId::kBodyMass,
-    LiveFieldId::kGeomFriction, LiveFieldId::kActuatorGain, LiveFieldId::kActuatorBias,
-    LiveFieldId::kDofArmature,  LiveFieldId::kDofDamping,   LiveFieldId::kDofFrictionLoss,
-    LiveFieldId::kJointStiffness};
+const LiveFieldId kDynamics[] = {LiveFieldId::kGravity,         LiveFieldId::kWind,
+                                 LiveFieldId::kBodyMass,        LiveFieldId::kGeomFriction,
+                                 LiveFieldId::kActuatorGain,    LiveFieldId::kActuatorBias,
+                                 LiveFieldId::kDofArmature,     LiveFieldId::kDofDamping,
+                                 LiveFieldId::kDofFrictionLoss, LiveFieldId::kJointStiffness};
 
 /// Numbers that no float holds.
 std::vector<double> odd_numbers(const mjModel& model, LiveFieldId field) {
   std::vector<double> values = read_live_field(model, field);
   for (size_t i = 0; i < values.size(); ++i)
-    values[i] = field == LiveFieldId::kBodyMass && values[i] == 0
-                    ? 0
-                    : 0.1 + static_cast<double>(i) / 3;
+    values[i] =
+        field == LiveFieldId::kBodyMass && values[i] == 0 ? 0 : 0.1 + static_cast<double>(i) / 3;
   return values;
 }
 
@@ -48,9 +47,11 @@ TEST(DynamicsFields, ReachTheStepInDoublePrecisionAndAResetTakesThemBack) {
 
 TEST(DynamicsFields, MoveAsAModelThatWasWrittenSo) {
   const std::string plain =
-      "<mujoco><option timestep=\"0.01\"/><worldbody><body name=\"arm\"><joint name=\"j\" axis=\"0 1 "
+      "<mujoco><option timestep=\"0.01\"/><worldbody><body name=\"arm\"><joint name=\"j\" axis=\"0 "
+      "1 "
       "0\" damping=\"0.3\" armature=\"0.01\"/><geom size=\".1\" pos=\".5 0 0\" "
-      "mass=\"1\"/></body></worldbody><actuator><position joint=\"j\" kp=\"10\"/></actuator></mujoco>";
+      "mass=\"1\"/></body></worldbody><actuator><position joint=\"j\" "
+      "kp=\"10\"/></actuator></mujoco>";
   std::string other = plain;
   for (const auto& [from, to] : {std::pair{"damping=\"0.3\"", "damping=\"0.77\""},
                                  {"armature=\"0.01\"", "armature=\"0.13\""},

@@ -60,9 +60,9 @@ double density_at(const RenderDescription& d, Vec3f p) {
     };
     const int i = row(at.x, v.size.x, v.nx), j = row(at.y, v.size.y, v.ny),
               k = row(at.z, v.size.z, v.nz);
-    sum += static_cast<double>(
-        v.density == nullptr ? v.even_density
-                             : (*v.density)[static_cast<size_t>((k * v.ny + j) * v.nx + i)]);
+    sum += static_cast<double>(v.density == nullptr
+                                   ? v.even_density
+                                   : (*v.density)[static_cast<size_t>((k * v.ny + j) * v.nx + i)]);
   }
   return sum;
 }
@@ -160,15 +160,16 @@ TEST_F(Weather, HazeThinsWithTheHeightAboveItsBase) {
     folder_.write("yard.xml", std::string("<mujoco><worldbody>") + place + "</worldbody></mujoco>");
     for (const double scale : {3.0, 20.0, 800.0}) {
       for (const double base : {0.0, 30.0, -12.0}) {
-        const RenderDescription d = described(
-            "[weather]\nmedium = \"haze\"\nvisibility = 500\nscale_height = " +
-            std::to_string(scale) + "\nbase = " + std::to_string(base) + "\n");
+        const RenderDescription d =
+            described("[weather]\nmedium = \"haze\"\nvisibility = 500\nscale_height = " +
+                      std::to_string(scale) + "\nbase = " + std::to_string(base) + "\n");
         const auto even = static_cast<double>(d.volumes[0].even_density);
         for (const double height : {-5.0, 0.1, 2.0, 10.0, 40.0}) {
           if (height > 6 * scale) continue;
           const double law = std::exp(-std::max(height, 0.0) / scale);
           const Vec3f p{7, 9, static_cast<float>(base + height)};
-          EXPECT_NEAR(density_at(d, p) / even / law, 1, 0.04) << scale << " " << base << " " << height;
+          EXPECT_NEAR(density_at(d, p) / even / law, 1, 0.04)
+              << scale << " " << base << " " << height;
         }
       }
     }
@@ -176,8 +177,7 @@ TEST_F(Weather, HazeThinsWithTheHeightAboveItsBase) {
 }
 
 TEST_F(Weather, FogHasTheHeightThatItIsGiven) {
-  const RenderDescription d =
-      described("[weather]\nvisibility = 100\nheight = 40\nbase = 5\n");
+  const RenderDescription d = described("[weather]\nvisibility = 100\nheight = 40\nbase = 5\n");
   EXPECT_GT(density_at(d, {5, 5, 44}), 0);
   EXPECT_EQ(density_at(d, {5, 5, 46}), 0);
 }

@@ -14,8 +14,8 @@
 
 namespace gloam::bridge {
 
-/// Hinges and slides of a robot in the World of a Snapshot, by their own names or full ones. Errors:
-/// those of check_joint_names(), no such joint, one joint by two names.
+/// Hinges and slides of a robot in the World of a Snapshot, by their own names or full ones.
+/// Errors: those of check_joint_names(), no such joint, one joint by two names.
 Result<std::vector<Joint>> find_joints(const Snapshot& snapshot, const std::string& robot,
                                        const std::vector<std::string>& names);
 
