@@ -1,6 +1,7 @@
 #include "runtime/live_simulation.h"
 
 #include <fmt/format.h>
+#include <malloc.h>
 
 #include <algorithm>
 #include <chrono>
@@ -20,6 +21,12 @@ namespace {
 
 constexpr std::chrono::milliseconds kLook{5};  // after which a wish to stop is seen
 constexpr int kLooks = 10;                     // after which keep_waiting is called
+
+// Worlds are compiled on the threads of many callers, each of which has a heap of its own: glibc
+// keeps their free pages, some MB a recompile, unless it is asked to return them.
+void return_free_memory() {
+  malloc_trim(0);
+}
 
 double wall_seconds() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
@@ -87,13 +94,16 @@ Status LiveSimulation::recompile(const World& world) {
   return metering_ == Metering::kAlways ? meters_.open(stream_context()) : Status();
 }
 
-// Of a World that runs no longer nothing is kept: it may have 100 MB.
+// Releases everything that belongs to a World which no longer runs: it may have 100 MB.
 void LiveSimulation::forget_other_worlds() {
   const std::shared_ptr<const CompiledWorld> world = simulator_->world();
   renderers_.keep_only(world);
   topics_.keep_only(world);
-  const std::lock_guard lock(solver_mutex_);
-  if (solver_ != nullptr && solver_->world() != world) solver_.reset();
+  {
+    const std::lock_guard lock(solver_mutex_);
+    if (solver_ != nullptr && solver_->world() != world) solver_.reset();
+  }
+  return_free_memory();
 }
 
 Result<Checkpoint> LiveSimulation::checkpoint() {
