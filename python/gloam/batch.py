@@ -78,7 +78,8 @@ def check(model: PathLike, root: PathLike = "", strict: bool = False) -> dict[st
 def _trajectory(source: Any) -> Any:
     if isinstance(source, tuple) and isinstance(source[0], Log):
         log, topic = source
-        return _core.Trajectory.make(*log.trajectory(topic), f"{log.file}:{topic}")
+        times, poses = log.trajectory(topic)
+        return _core.Trajectory.make(times, poses, f"{log.file}:{topic}")
     if isinstance(source, tuple):
         return _core.Trajectory.make(source[0], source[1])
     file, _, topic = str(source.file if isinstance(source, Log) else os.fspath(source)).partition(":/")

@@ -194,7 +194,7 @@ def test_terms_are_documented() -> None:
 
 def test_the_toml_of_the_documentation(tmp_path: Path) -> None:
     page = (Path(__file__).resolve().parents[2] / "docs" / "policies.md").read_text()
-    text = page.split("``` toml\n")[1].split("```")[0]
+    text = page.split("## The TOML\n")[1].split("``` toml\n")[1].split("```")[0]
     spec = Policy(write_network(tmp_path / "p.onnx", np.zeros((2, 3))), write_settings(tmp_path, text)).spec
     assert spec.default_positions.tolist() == [0.0, 0.8] and spec.command_ranges["vy"] == (-0.5, 0.5)
     assert spec.model_joints == {"FR_hip_joint": "fr_hip"} and spec.terms[0].sensor == "imu_gyro"
