@@ -1,7 +1,7 @@
 #pragma once
-// Commands: the only way to change a running simulation. Each carries the integer step at which it
-// applies; one whose step has passed applies at the next step, and the log records the step it
-// really applied at.
+// Commands: the only way to change a running simulation. Each Command has the integer step at which
+// it applies. If that step has passed, it applies at the next one; the log records the step at
+// which it was applied.
 
 #include <cstdint>
 #include <string>
@@ -20,10 +20,10 @@ struct SetControl {
   Actuator actuator;
   double value = 0;
 };
-/// Puts a joint somewhere else, or gives it another velocity, in the units of JointState.
+/// Sets the position or velocity of a joint, in the units of JointState.
 struct SetJointState {
   Joint joint;
-  std::vector<double> qpos, qvel;  ///< all of the joint's numbers; empty = stays as it is
+  std::vector<double> qpos, qvel;  ///< all of the joint's numbers; empty = unchanged
 };
 /// Sets all controls of a robot at once, in the order of RobotInfo::actuators, each in its
 /// actuator's own unit.
@@ -36,8 +36,8 @@ struct SetVelocityGoal {
   Robot robot = {0, 0};
   double vx = 0, vy = 0, yaw_rate = 0;
 };
-/// Position that the robot's controller is to bring a hinge or slide joint to [rad, m]; stays until
-/// changed. "joint_position" obeys it, in place of its target.
+/// Goal position of a hinge or slide joint for the robot's controller [rad, m]; stays until
+/// changed. The controller "joint_position" uses it instead of its target.
 struct SetJointGoal {
   Joint joint;
   double position = 0;
@@ -52,12 +52,12 @@ struct SetWrench {
   Body body;
   Vec3 force, torque;
 };
-/// Adds to the linear velocity of the free body (or root of a floating robot) [m/s].
+/// Adds to the linear velocity of a free body (or of the root of a floating robot) [m/s].
 struct AddVelocity {
   Body body;
   Vec3 velocity;
 };
-/// Pulls a body point towards a target like a spring (MuJoCo's perturbation): stays until `active`
+/// Pulls a point of a body towards a target like a spring (MuJoCo's perturbation), until `active`
 /// is false.
 struct DragBody {
   Body body;
@@ -65,28 +65,28 @@ struct DragBody {
   Vec3 target_W;
   bool active = true;
 };
-/// Back to the initial state; step and time start at zero again.
+/// Returns to the initial state; step and time restart at zero.
 struct ResetSim {};
 
-/// The closed list of model fields that may change while the simulation runs. Values mean what they
-/// mean in the model; pictures show them from the step on at which the Command applies.
+/// The model fields that may change while the simulation runs. Values have the same meaning as in
+/// the model; images show them from the step at which the Command applies.
 enum class LiveFieldId {
   kGravity,              ///< (3) [m/s²]
   kWind,                 ///< (3) [m/s]
   kBodyMass,             ///< (nbody) [kg]; the inertia scales with it
   kGeomFriction,         ///< (ngeom x 3)
-  kHeightField,          ///< (nhfielddata) 0..1, seen and collided with
+  kHeightField,          ///< (nhfielddata) 0..1, for rendering and collisions
   kLightDiffuse,         ///< (nlight x 3)
-  kLightIntensity,       ///< (nlight) [cd], 0 = diffuse alone counts (docs/light.md)
+  kLightIntensity,       ///< (nlight) [cd], 0 = use the diffuse colour only (docs/light.md)
   kLightActive,          ///< (nlight) 0 or 1
-  kGeomColor,            ///< (ngeom x 4) rgba 0..1; 0.5 0.5 0.5 1 = the material's
+  kGeomColor,            ///< (ngeom x 4) rgba 0..1; 0.5 0.5 0.5 1 = colour of the material
   kMaterialColor,        ///< (nmat x 4) rgba 0..1
   kMaterialEmission,     ///< (nmat) >= 0
   kMaterialSpecular,     ///< (nmat) 0..1
   kMaterialShininess,    ///< (nmat) 0..1
   kMaterialReflectance,  ///< (nmat) 0..1, of planes and boxes
   kMaterialMetallic,     ///< (nmat) 0..1, -1 = not given
-  kMaterialRoughness,    ///< (nmat) 0..1, -1 = not given: shininess counts
+  kMaterialRoughness,    ///< (nmat) 0..1, -1 = not given: use shininess
   kActuatorGain,         ///< (nactuator x 10) gainprm
   kActuatorBias,         ///< (nactuator x 10) biasprm: [1] = -kp and [2] = -kv of a position servo
   kDofArmature,          ///< (nv) [kg or kg m²]
@@ -95,10 +95,10 @@ enum class LiveFieldId {
   kJointStiffness,       ///< (njnt) [N/m or N m/rad]
 };
 inline constexpr int kLiveFieldCount = static_cast<int>(LiveFieldId::kJointStiffness) + 1;
-const char* live_field_name(LiveFieldId field);  ///< "gravity", as World::inputs() has it
-/// Name of its array in MuJoCo, as Instant::value takes it: "opt.gravity".
+const char* live_field_name(LiveFieldId field);  ///< "gravity", as in World::inputs()
+/// Name of its array in MuJoCo, for Instant::value: "opt.gravity".
 const char* live_field_array(LiveFieldId field);
-/// Error: there is none of this name; the hint tells the nearest.
+/// Error: no such field; the hint suggests the nearest name.
 Result<LiveFieldId> find_live_field(std::string_view name);
 
 /// Replaces elements [first, first + values.size()) of a live field.
@@ -108,20 +108,20 @@ struct SetLiveField {
   std::vector<double> values;
 };
 
-/// Commands that wait when the simulation is recompiled are for the things of the same names from
-/// then on; those of which the thing is gone are thrown away.
+/// When the simulation is recompiled, queued Commands apply to the elements of the same names.
+/// Commands for elements that no longer exist are discarded.
 struct Command {
   static constexpr int64_t kNextStep = -1;
-  int64_t step = kNextStep;  ///< applies before this step is taken
+  int64_t step = kNextStep;  ///< applies before this step
   std::variant<SetControl, SetVelocityGoal, SetMocapPose, SetWrench, AddVelocity, DragBody,
                ResetSim, SetLiveField, SetJointState, SetControls, SetJointGoal>
       what;
 };
 
-/// A Command and when it really applied.
+/// A Command and the time at which it was applied.
 struct LoggedCommand {
   int64_t run = 0;  ///< number of resets before it
-  Command command;  ///< `step` = the step it applied at; a ResetSim ends its run
+  Command command;  ///< `step` = the step at which it was applied; a ResetSim ends its run
 };
 
 }  // namespace gloam

@@ -15,7 +15,7 @@ class ControlLease {
  public:
   virtual ~ControlLease() = default;
   virtual std::string robot() const = 0;  ///< name
-  /// Simulation::post, for the holder. Errors: those of post; a Command to a robot that somebody
+  /// Simulation::post, for the holder. Errors: errors of post; a Command to a robot that somebody
   /// else has claimed.
   virtual Status post(std::span<const Command> commands) = 0;
   Status post(const Command& command) { return post(std::span<const Command>(&command, 1)); }

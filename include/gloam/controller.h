@@ -1,6 +1,6 @@
 #pragma once
-// Controllers: code that drives a robot on the simulation's thread, between steps, at a declared
-// rate. A type that is registered here is what `[robot.controller] type` may name.
+// Controllers: code that controls a robot on the simulation's thread, between steps, at a declared
+// rate. Types that are registered here can be named in `[robot.controller] type`.
 
 #include <cstdint>
 #include <functional>
@@ -19,7 +19,7 @@ struct mjData_;
 
 namespace gloam {
 
-/// Velocity that a walking or driving robot is to have.
+/// Target velocity of a walking or driving robot.
 struct VelocityTarget {
   double vx = 0, vy = 0, yaw_rate = 0;  ///< heading frame [m/s, m/s, rad/s]
 };
@@ -27,55 +27,57 @@ struct VelocityTarget {
 /// Inputs of a controller at one call.
 struct ControlInputs {
   const mjModel_* model;  ///< with the simulation's own options
-  mjData_* data;          ///< data of the instant; contacts are the last step's
-  /// Loads of soft ground in the last step, as contacts in `data`.
+  mjData_* data;          ///< state at this instant; contacts are from the last step
+  /// Loads of soft ground in the last step, like the contacts in `data`.
   std::span<const ContactLoad> loads;
-  int64_t step = 0;     ///< number of the step that is taken next
+  int64_t step = 0;     ///< number of the next step
   double period = 0;    ///< between calls [s]
-  VelocityTarget goal;  ///< the robot's, from its scene or SetVelocityGoal
-  /// Positions that SetJointGoal has given [rad, m], NaN = none, by MuJoCo's joint id, (njnt)
+  VelocityTarget goal;  ///< current goal of the robot, from the scene or SetVelocityGoal
+  /// Positions from SetJointGoal [rad, m], NaN = none, indexed by MuJoCo's joint id, (njnt)
   std::span<const double> joint_goals = {};
 };
 
-/// Reads the state, writes controls. All calls come on the simulation's thread.
+/// Reads the state and writes controls. All functions are called on the simulation's thread.
 class Controller {
  public:
   virtual ~Controller() = default;
-  /// Begins anew: the simulation stands at its initial state, or a recompile brought the robot.
+  /// Starts from the beginning: the simulation is at its initial state, or a recompile added the
+  /// robot.
   virtual void reset(const mjModel_* model, const mjData_* data) = 0;
-  /// Goes on from `before`, the same robot's controller in the World before a recompile: what it
-  /// remembers of the robot counts, what it knows of the model is its own. Where that cannot be,
-  /// it begins anew from where the simulation stands.
+  /// Continues from `before`, the same robot's controller in the World before a recompile: takes
+  /// over its memory of the robot, but not its data about the model. If that is impossible, starts
+  /// from the beginning at the simulation's present state.
   virtual void take_over(const mjModel_* model, const mjData_* data, const Controller& before) {
     static_cast<void>(before);
     reset(model, data);
   }
   /// Writes data->ctrl of its own actuators only. Must not allocate, lock or throw.
   virtual void control(const ControlInputs& in) = 0;
-  /// A copy that goes on exactly as this one would. Null: it cannot be copied; a checkpoint is then
-  /// restored by stepping the run again.
+  /// Returns a copy that continues exactly as this controller would. Null: it cannot be copied;
+  /// checkpoints are then restored by stepping the run again.
   virtual std::unique_ptr<Controller> clone() const { return nullptr; }
 };
 
-/// The robot that a controller is made for, and its World.
+/// The robot for which a controller is created, and its World.
 struct ControllerRequest {
   World world;
-  RobotOptions robot;  ///< name and robot.controller as the scene gives them
+  RobotOptions robot;  ///< name and robot.controller as in the scene
 };
-/// Null: the robot is not driven. Errors: with the options' place in the scene file.
+/// Null: the robot has no controller. Errors: with the location of the options in the scene file.
 using ControllerFactory =
     std::function<Result<std::unique_ptr<Controller>>(const ControllerRequest&)>;
 
-/// Adds a type for scenes that are read from now on; any thread. Its own settings are
-/// `[robot.controller.params]`. Error: a type of this name exists, or it is no identifier.
+/// Adds a type for scenes that are read afterwards; any thread. Its settings are in
+/// `[robot.controller.params]`. Error: a type of this name exists, or the name is not an
+/// identifier.
 Status register_controller(std::string type, ControllerFactory factory);
 
-/// The numbers of one key of `[robot.controller.params]`: one or an array; empty = not given.
-/// Error: something else stands there.
+/// Returns the numbers of one key of `[robot.controller.params]`, a number or an array; empty = not
+/// given. Error: the value is neither.
 Result<std::vector<double>> controller_param(const ControllerOptions& options,
                                              std::string_view key);
 
-/// Types that there are, in the order in which they were registered; Gloam's own come first.
+/// All types in the order of registration; Gloam's own come first.
 std::vector<std::string> controller_types();
 
 }  // namespace gloam

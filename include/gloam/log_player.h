@@ -11,7 +11,7 @@ namespace gloam {
 class LogPlayer {
  public:
   /// Bodies are where the logged states say, interpolated between; all else is seen anew, as
-  /// `replay` asks. Of its request only `simulation` counts. Errors: those of replay_log.
+  /// `replay` asks. Of its request only `simulation` counts. Errors: errors of replay_log.
   static Result<std::unique_ptr<LogPlayer>> open(const LogReplay& replay);
   virtual ~LogPlayer() = default;
 

@@ -1,8 +1,8 @@
 #pragma once
-// Models by hand: a document of MJCF elements that is made, read, changed and written. Element is
-// one of them by name; gloam/mjcf_elements.h has a class for each with a property for each
-// attribute (generated when Gloam is built, from MuJoCo's own library and manual). What a document
-// holds is what MuJoCo's parser reads; MuJoCo's manual says what it means.
+// MJCF models as documents of elements that can be created, read, changed and written. Element
+// gives access by name. gloam/mjcf_elements.h has a class for each element with a property for each
+// attribute (generated when Gloam is built, from MuJoCo's own library and manual). A document may
+// contain everything that MuJoCo's parser reads; MuJoCo's manual documents the meaning.
 
 #include <filesystem>
 #include <memory>
@@ -19,31 +19,31 @@ namespace gloam::mjcf {
 
 struct Node;  // src/scene/mjcf/node.h
 
-/// One element of a document, by reference: copies are the same element. An element that was
-/// removed lives as long as something refers to it.
+/// Reference to one element of a document: copies refer to the same element. A removed element
+/// lives as long as there is a reference to it.
 class Element {
  public:
   explicit Element(std::shared_ptr<Node> node) : node_(std::move(node)) {}
 
   std::string_view tag() const;   ///< as written: "joint", "worldbody"
-  std::string_view path() const;  ///< in the grammar: "mujoco/body/joint"
-  SourceLoc loc() const;          ///< place where it was read; empty for a new element
+  std::string_view path() const;  ///< path in the grammar: "mujoco/body/joint"
+  SourceLoc loc() const;          ///< location in the file; empty for a new element
 
-  /// As written; empty where it is not given. Errors: the element has no such attribute.
+  /// Returns the value as written; empty if it is not given. Errors: the element has no such
+  /// attribute.
   Result<std::optional<std::string>> get(std::string_view attribute) const;
-  /// Errors: the element has no such attribute (the nearest is named), it does not take this value.
+  /// Errors: the element has no such attribute (the message names the nearest one); invalid value.
   Status set(std::string_view attribute, std::string_view value);
-  /// MuJoCo's default, or the class's, holds again. Errors: the element has no such attribute.
+  /// Restores the default of MuJoCo or of the class. Errors: the element has no such attribute.
   Status clear(std::string_view attribute);
-  std::vector<std::string> given() const;  ///< attributes that it gives, in order
+  std::vector<std::string> given() const;  ///< attributes with a given value, in order
 
   std::vector<Element> children() const;
   std::vector<Element> children(std::string_view tag) const;
   std::optional<Element> parent() const;
-  /// Adds an element below, behind those that are there. Errors: it may not stand here, or
-  /// not twice.
+  /// Appends a child element. Errors: the element is not allowed here, or not more than once.
   Result<Element> add(std::string_view tag);
-  /// Takes it out of its document.
+  /// Removes the element from its document.
   void remove();
 
   bool operator==(const Element& other) const { return node_ == other.node_; }
@@ -53,7 +53,7 @@ class Element {
   std::optional<std::string> text_of(std::string_view attribute) const;
   std::optional<double> real_of(std::string_view attribute) const;
   std::optional<int> int_of(std::string_view attribute) const;
-  std::vector<double> reals_of(std::string_view attribute) const;  ///< empty where not given
+  std::vector<double> reals_of(std::string_view attribute) const;  ///< empty if not given
   std::vector<int> ints_of(std::string_view attribute) const;
   void put(std::string_view attribute, std::string_view value);
   void put(std::string_view attribute, std::span<const double> values);
@@ -90,7 +90,7 @@ class Element {
   std::shared_ptr<Node> node_;
 };
 
-/// The elements below `above`, however deep, that are of a generated class.
+/// All descendants of `above` that belong to a generated class.
 template <class E>
 std::vector<E> all(const Element& above) {
   std::vector<E> list;
@@ -101,28 +101,29 @@ std::vector<E> all(const Element& above) {
   return list;
 }
 
-/// A whole model: the element <mujoco> and what is below it.
+/// A whole model: the element <mujoco> and its descendants.
 class Document {
  public:
   /// An empty model.
   static Document make(std::string_view model_name);
-  /// Reads MJCF (.xml) or its TOML form (.toml, docs/models.md). Of what it includes or names,
-  /// nothing is read. Errors: with file and line; an element or attribute that MJCF does not have.
+  /// Reads MJCF (.xml) or its TOML form (.toml, docs/models.md). Included or referenced files are
+  /// not read. Errors, with file and line: an element or attribute that MJCF does not have.
   static Result<Document> load(const std::filesystem::path& file);
   static Result<Document> from_xml(std::string_view text, const std::string& file = {});
   static Result<Document> from_toml(std::string_view text, const std::string& file = {});
 
   const Element& root() const { return root_; }
-  /// Elements of one tag, in document order, whose name fits `pattern` (* stands for any text).
+  /// Elements of one tag, in document order, whose name matches `pattern` (* matches any text).
   std::vector<Element> find(std::string_view tag, std::string_view pattern = "*") const;
 
-  /// Does every element have what the parser requires? Errors: the first that does not.
+  /// Checks that every element has the attributes that the parser requires. Error: the first
+  /// element that does not.
   Status check() const;
-  /// Without what MJCF has no attribute for ("not of MJCF" in gloam/mjcf_elements.h).
+  /// Omits values for which MJCF has no attribute ("not of MJCF" in gloam/mjcf_elements.h).
   std::string to_xml() const;
   std::string to_toml() const;
-  /// As .xml or .toml, by the name; replaces the file at once or not at all. Errors: those of
-  /// check(); something that only .toml can hold.
+  /// Writes .xml or .toml, depending on the extension; replaces the file atomically. Errors: as for
+  /// check(); a value that only .toml can represent.
   Status save(const std::filesystem::path& file) const;
 
  private:

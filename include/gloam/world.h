@@ -1,5 +1,5 @@
 #pragma once
-// World: what a Scene compiles to. Immutable; shared by everything that runs it.
+// World: the immutable result of compiling a Scene, shared by all its simulations.
 
 #include <cstdint>
 #include <filesystem>
@@ -17,29 +17,29 @@ namespace gloam {
 
 struct CompiledWorld;  // src/world/world.h
 
-/// A name and its kind, for listings.
+/// Name and kind of an element, for listings.
 struct NamedElement {
-  std::string name;    ///< full name, with the robot's prefix; "" when the model gives none
-  std::string detail;  ///< type, size or target in words
+  std::string name;    ///< full name, with the robot's prefix; "" if the model gives none
+  std::string detail;  ///< type, size or target as text
 };
 
-/// What the model holds, for `gloam info`.
+/// Contents of the model, for `gloam info`.
 struct WorldInfo {
-  /// Cameras without a name are called "camera_ID", so that they can be asked for.
+  /// Cameras without a name are listed as "camera_ID", so that they can be requested.
   std::vector<NamedElement> bodies, joints, actuators, sensors, cameras, geoms, lights, materials;
   std::vector<NamedElement> sites, tendons, equalities, keyframes, textures;
   int nq = 0, nv = 0, nu = 0;
   double timestep = 0;             ///< [s]
   double mass = 0;                 ///< of all bodies [kg]
   int64_t model_bytes = 0;         ///< mjModel
-  int64_t triangles = 0;           ///< that are drawn: of meshes, height fields, model files
+  int64_t triangles = 0;           ///< rendered triangles of meshes, height fields and model files
   std::vector<Region> regions;     ///< floors of a generated environment
-  std::vector<DrawnOption> drawn;  ///< what came of [[randomize]]
+  std::vector<DrawnOption> drawn;  ///< values drawn by [[randomize]]
   std::vector<Error> notes;        ///< as World::notes()
   std::vector<Error> unsupported;  ///< as World::unsupported()
 };
 
-/// A robot of a World: a [[robot]], or the trees of a bare model that actuators move.
+/// A robot of a World: a [[robot]], or in a bare model the kinematic trees with actuators.
 struct RobotInfo {
   Robot robot;
   std::string name;
@@ -49,26 +49,26 @@ struct RobotInfo {
 };
 
 struct BodyInfo {
-  Body body, parent;  ///< the world's own body is its parent's child
-  std::string name;   ///< full name, "" when the model gives none
-  Robot robot;        ///< id -1 = no robot's
+  Body body, parent;  ///< the world body is its own parent
+  std::string name;   ///< full name, "" if the model gives none
+  Robot robot;        ///< id -1 = not part of a robot
 };
 
-/// Elements of the files that pictures do not show.
+/// Elements of the files that are not rendered.
 struct NotDrawn {
-  std::vector<Error> hidden;   ///< groups and sites that pictures show when asked to
-  std::vector<Error> lacking;  ///< cannot be drawn
+  std::vector<Error> hidden;   ///< groups and sites that are rendered only on request
+  std::vector<Error> lacking;  ///< cannot be rendered
 };
 
-/// How far a job is.
+/// Progress of a job.
 struct Progress {
   std::string what;    ///< "simulating", "rendering", "making 'chair' physical" …
-  double done = 0;     ///< 0..1, never less than before
+  double done = 0;     ///< 0..1, never decreases
   double seconds = 0;  ///< wall time so far [s]
-  double left = 0;     ///< about, of `what` [s]; 0 = as `done` grows, < 0 = cannot be told
+  double left = 0;     ///< estimate for `what` [s]; 0 = extrapolate `done`, < 0 = unknown
 };
-/// Called about ten times a second, one call at a time, on a thread of the job's; returns false to
-/// stop the job.
+/// Called about ten times per second, one call at a time, on a thread of the job. Returns false to
+/// cancel the job.
 using ProgressCallback = std::function<bool(const Progress&)>;
 
 class World {
@@ -76,12 +76,12 @@ class World {
   World() = default;
   explicit World(std::shared_ptr<const CompiledWorld> compiled) : compiled_(std::move(compiled)) {}
 
-  /// Compiles a Scene, on any thread. On failure nothing is left behind. Without `progress` the log
-  /// tells of what takes long. Stopped by it, the Error is kInterrupted: within 0.2 s, but while
-  /// MuJoCo reads or compiles the model.
+  /// Compiles a Scene, on any thread. A failure leaves nothing behind. Without `progress`, slow
+  /// stages are reported in the log. If `progress` cancels the compilation, the Error is
+  /// kInterrupted, within 0.2 s except while MuJoCo reads or compiles the model.
   static Result<World> compile(const Scene& scene, const ProgressCallback& progress = {});
-  /// The same of a bare model, which starts from one of its keyframes: by its name, else by its
-  /// number from 0. Errors: also, there is none of that name; the Scene is no bare model.
+  /// Compiles a bare model that starts from one of its keyframes, given by name or else by number
+  /// from 0. Errors: as for compile(); no such keyframe; the Scene is not a bare model.
   static Result<World> compile_at(const Scene& scene, const std::string& keyframe,
                                   const ProgressCallback& progress = {});
 
@@ -94,33 +94,33 @@ class World {
   Result<Tendon> find_tendon(const std::string& name) const;
   Result<Robot> find_robot(const std::string& name) const;
 
-  const Scene& scene() const;  ///< that it was compiled from, with what generators added
+  const Scene& scene() const;  ///< source of the World, including all elements added by generators
   std::vector<RobotInfo> robots() const;
-  std::vector<BodyInfo> bodies() const;  ///< in MuJoCo's order, the world first
-  /// All that a simulation of it can say and hear: what bridges and logs go by.
+  std::vector<BodyInfo> bodies() const;  ///< in MuJoCo's order, the world body first
+  /// All outputs and inputs of a simulation of this World; bridges and logs use these lists.
   std::vector<StreamInfo> streams() const;
   std::vector<InputInfo> inputs() const;
-  /// Numbers of a live field (gloam/command.h) as the files give them: what a SetLiveField changes
-  /// and a reset restores. Error: no such field.
+  /// Values of a live field (gloam/command.h) in the files. SetLiveField changes them in a
+  /// simulation, and a reset restores them. Error: no such field.
   Result<std::vector<double>> live_field(const std::string& name) const;
-  /// Columns of metrics.csv but the time. Error: a [[metric]] or [[goal]] of the scene that does
-  /// not parse, or is of what there is not.
+  /// Columns of metrics.csv except the time. Error: a [[metric]] or [[goal]] of the scene that does
+  /// not parse or refers to unknown elements.
   Result<std::vector<MetricInfo>> metrics() const;
 
   WorldInfo info() const;
-  /// What is odd about the scene and taken all the same, and where: open meshes, sizes that look
-  /// like another unit, nodes that got another name, robots and loose things that begin inside
-  /// others. The last takes one pass of MuJoCo's collision.
+  /// Suspicious but accepted properties of the scene, with their locations: open meshes, sizes that
+  /// suggest another unit, renamed nodes, robots and loose objects that start inside others. The
+  /// last check takes one pass of MuJoCo's collision detection.
   std::vector<Error> notes() const;
-  /// What is in the files and is not simulated or drawn, and where.
+  /// Elements of the files that are not simulated or rendered, with their locations.
   const std::vector<Error>& unsupported() const;
 
-  /// Reads all that pictures show to tell, which takes as long as a renderer's start.
+  /// Reads all data for rendering, so it takes as long as starting a renderer.
   NotDrawn not_drawn() const;
 
-  /// Writes the whole level as one MJCF with its assets into `folder`/scene.xml; stock MuJoCo loads
-  /// it to the same model, equal in every array. With `left_out`, what is only drawn joins it as
-  /// visual geoms, and what MJCF cannot hold is listed there.
+  /// Writes the whole scene as one MJCF with its assets into `folder`/scene.xml. Stock MuJoCo loads
+  /// it as the same model, equal in every array. With `left_out`, elements that are only rendered
+  /// are added as visual geoms, and elements that MJCF cannot represent are listed there.
   Status export_mjcf(const std::filesystem::path& folder,
                      std::vector<Error>* left_out = nullptr) const;
 
