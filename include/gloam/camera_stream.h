@@ -1,5 +1,5 @@
 #pragma once
-// Streams of pictures of a running simulation.
+// Streams of images from a running simulation.
 
 #include <cstdint>
 #include <functional>
@@ -14,26 +14,26 @@
 
 namespace gloam {
 
-/// One stream of pictures from one camera.
+/// One stream of images from one camera.
 struct CameraRequest {
   std::string camera = "free";  ///< full name, or "free": frames the whole model until moved
-  /// Frames per second of simulation time; 0 = the camera's own, else 20.
+  /// Frames per second of simulation time; 0 = the camera's own rate, or 20 if it has none.
   Rational rate = {0, 1};
   int width = 0, height = 0;  ///< [px]; 0 = the camera's own
   /// Channels by name, from kCameraChannels (gloam/outputs.h).
   std::vector<std::string> outputs = {"rgb"};
   RenderOptions render = {};
-  std::optional<Pose> X_WC = {};  ///< of camera "free": where it stands at first
-  bool required =
-      false;  ///< the simulation waits for this camera; else frames are dropped, oldest first
-  bool is_view = false;  ///< a picture for a viewer, for which Pace::kSensors does not wait
+  std::optional<Pose> X_WC = {};  ///< initial pose of camera "free"
+  bool required = false;  ///< true: the simulation waits for this camera; false: frames may be
+                          ///< dropped, oldest first
+  bool is_view = false;   ///< for a viewer; Pace::kSensors does not wait for it
   EndCallback on_end = {};
 };
 
 class CameraStream : public Stream {
  public:
-  /// Moves the free camera: pose of the camera in the world, looks along -Z. No effect on the
-  /// model's own cameras.
+  /// Sets the pose of the free camera in the world; it looks along -Z. No effect on the model's own
+  /// cameras.
   virtual void set_pose(const Pose& X_WC) = 0;
   virtual Pose pose() const = 0;
   /// Renders the latest Snapshot again, also while the simulation is paused.

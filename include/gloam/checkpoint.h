@@ -1,5 +1,5 @@
 #pragma once
-// Checkpoint: an instant of a simulation that any simulation of the same scene can go on from.
+// Checkpoint: an instant of a simulation, from which any simulation of the same scene can continue.
 
 #include <cstdint>
 #include <memory>
@@ -18,11 +18,11 @@ class Checkpoint {
 
   int64_t step() const;   ///< since reset
   double time() const;    ///< simulation time [s]
-  uint64_t seed() const;  ///< of the run
-  uint64_t hash() const;  ///< of the state; a restored simulation has the same
-  World world() const;    ///< the one that ran
-  /// Whether restoring takes a copy. Else the run is stepped again from its beginning, as fast as
-  /// the machine can: with effects, agents, or controllers without Controller::clone().
+  uint64_t seed() const;  ///< seed of the run
+  uint64_t hash() const;  ///< hash of the state; a restored simulation has the same hash
+  World world() const;    ///< World that was running
+  /// Whether restore() copies the state. Otherwise (with effects, agents, or controllers without
+  /// Controller::clone()) it steps the run again from its beginning, as fast as possible.
   bool is_copied() const;
 
   const CheckpointData& data() const { return *data_; }

@@ -9,14 +9,15 @@
 
 namespace gloam {
 
-/// Held by who alone drives a robot; destroying it gives the robot back. It must go before its
-/// simulation does. Any thread. A recompile keeps it for the robot of the same name.
+/// Gives its holder exclusive control of a robot; destroying it releases the robot. Must be
+/// destroyed before its simulation. Any thread. A recompile keeps it for the robot of the same
+/// name.
 class ControlLease {
  public:
   virtual ~ControlLease() = default;
   virtual std::string robot() const = 0;  ///< name
-  /// Simulation::post, for the holder. Errors: errors of post; a Command to a robot that somebody
-  /// else has claimed.
+  /// Simulation::post for the holder. Errors: as for post; a Command to a robot that another client
+  /// has claimed.
   virtual Status post(std::span<const Command> commands) = 0;
   Status post(const Command& command) { return post(std::span<const Command>(&command, 1)); }
 };

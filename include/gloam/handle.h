@@ -5,12 +5,13 @@
 
 namespace gloam {
 
-/// Typed index of a named element. Resolve once with World::find_*, then use on every Snapshot of
-/// that World. After a recompile find it again: a handle of another World is refused.
+/// Typed index of a named element. Resolve it once with World::find_*, then use it on every
+/// Snapshot of that World. Look it up again after a recompile: handles of another World are
+/// rejected.
 template <class Kind>
 struct Handle {
   int id = -1;
-  uint64_t world = 0;  ///< World that found it; 0 = an id made by the user, taken unchecked
+  uint64_t world = 0;  ///< World that found it; 0 = an unchecked id from the user
 };
 using Joint = Handle<struct JointKind>;
 using Body = Handle<struct BodyKind>;
@@ -19,6 +20,6 @@ using SensorHandle = Handle<struct SensorHandleKind>;
 using Camera = Handle<struct CameraKind>;
 using Geom = Handle<struct GeomKind>;
 using Tendon = Handle<struct TendonKind>;
-using Robot = Handle<struct RobotKind>;  ///< id: by order of World::robots()
+using Robot = Handle<struct RobotKind>;  ///< id: index in World::robots()
 
 }  // namespace gloam

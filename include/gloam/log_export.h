@@ -1,5 +1,5 @@
 #pragma once
-// Logs for other tools: trajectories as TUM, KITTI and EuRoC files, topics as tables.
+// Export of logs for other tools: trajectories as TUM, KITTI and EuRoC files, topics as tables.
 
 #include <cstdint>
 #include <filesystem>
@@ -11,12 +11,13 @@
 
 namespace gloam {
 
-/// Poses of one topic in the order of the log: Odometry, PoseStamped, PoseWithCovarianceStamped,
-/// TransformStamped, or "/tf:FRAME" for one child frame of a TFMessage, in its parent. Logs of any
-/// writer. Errors: no such topic, none of these types, no pose in it, a damaged message.
+/// Reads the poses of one topic in the order of the log: Odometry, PoseStamped,
+/// PoseWithCovarianceStamped, TransformStamped, or "/tf:FRAME" for one child frame of a TFMessage,
+/// relative to its parent. Accepts logs of any writer. Errors: no such topic, another type, no pose
+/// in it, a malformed message.
 Result<std::vector<StampedPose>> read_trajectory(const std::filesystem::path& log,
                                                  const std::string& topic);
-/// Topics that read_trajectory() takes, without those of TFMessages.
+/// Topics that read_trajectory() accepts, except TFMessages.
 Result<std::vector<std::string>> trajectory_topics(const std::filesystem::path& log);
 
 enum class TrajectoryFormat : uint8_t {
@@ -26,9 +27,10 @@ enum class TrajectoryFormat : uint8_t {
 };
 std::string trajectory_text(const std::vector<StampedPose>& poses, TrajectoryFormat format);
 
-/// Messages of a topic as CSV: a row each, a column for every number and text of the first message;
-/// long arrays of bytes are left out. What later messages have more is left out, what they have
-/// less is empty. Returns the number of rows. Errors: no such topic, a file that is there already.
+/// Writes the messages of a topic as CSV: a row for each message, a column for every number and
+/// text of the first message except long arrays of bytes. Additional fields of later messages are
+/// omitted; missing ones are empty. Returns the number of rows. Errors: no such topic, the file
+/// already exists.
 Result<int64_t> write_topic_table(const std::filesystem::path& log, const std::string& topic,
                                   const std::filesystem::path& to);
 

@@ -1,5 +1,5 @@
 #pragma once
-// LogPlayer: a logged run as a Simulation that can be played, slowed, and gone about in.
+// LogPlayer: plays a logged run as a Simulation, at any speed and from any instant.
 
 #include <memory>
 
@@ -10,18 +10,18 @@ namespace gloam {
 
 class LogPlayer {
  public:
-  /// Bodies are where the logged states say, interpolated between; all else is seen anew, as
-  /// `replay` asks. Of its request only `simulation` counts. Errors: errors of replay_log.
+  /// Bodies follow the interpolated logged states; everything else is rendered again, as `replay`
+  /// requests. Only `simulation` of its request is used. Errors: as for replay_log.
   static Result<std::unique_ptr<LogPlayer>> open(const LogReplay& replay);
   virtual ~LogPlayer() = default;
 
-  /// Runs from 0 to end() and stands still there. Cameras, LiDARs, sensors and topics open as on
-  /// any other; Commands are taken and do nothing.
+  /// Runs from 0 to end() and stops there. Cameras, LiDARs, sensors and topics open as in any other
+  /// simulation; Commands are accepted but have no effect.
   virtual Simulation& simulation() = 0;
   virtual double end() const = 0;  ///< [s]
-  /// Goes to an instant, forwards or back, and plays on from there if it played. Snapshots are of a
-  /// new run. Blocks: smoke and other effects are solved again from the beginning. Errors: not in
-  /// [0, end()], the log cannot be read there.
+  /// Moves to an instant, forwards or backwards, and continues from there if it was playing.
+  /// Snapshots belong to a new run. Blocks: smoke and other effects are solved again from the
+  /// beginning. Errors: not in [0, end()], the log cannot be read there.
   virtual Status seek(double time) = 0;
 };
 

@@ -12,11 +12,11 @@ namespace gloam::mjcf {
 struct SchemaCoverage {
   struct Attribute {
     std::string name;           ///< "mujoco/body/joint/damping"
-    bool is_mirrored = false;   ///< the parser takes a value of it
-    bool is_spec_only = false;  ///< MJCF lacks it: of mjSpec, for models in TOML
-    std::string complaint;      ///< message of the parser, if it takes no value
-    /// Fields that it sets; "mjsGeom.name" for the name of an element, "mjsGeom" where their number
-    /// varies. Empty: it is an instruction to the parser.
+    bool is_mirrored = false;   ///< the parser accepts a value for it
+    bool is_spec_only = false;  ///< only in mjSpec, not in MJCF; for models in TOML
+    std::string complaint;      ///< message of the parser, if it accepts no value
+    /// Fields that it sets; "mjsGeom.name" for the name of an element, "mjsGeom" if their number
+    /// varies. Empty: an instruction to the parser.
     std::vector<std::string> fields;
   };
   struct Field {
@@ -30,8 +30,8 @@ struct SchemaCoverage {
   std::vector<Field> fields;          ///< fields of mjSpec and of all structs in it
 };
 
-/// Asks MuJoCo's parser about every attribute, which takes seconds. `progress` is told the fraction
-/// that is done, from any thread, and returns false to stop.
+/// Tests every attribute with MuJoCo's parser, which takes seconds. `progress` receives the
+/// completed fraction, on any thread, and returns false to cancel.
 SchemaCoverage find_schema_coverage(const std::function<bool(double)>& progress = {});
 
 /// JSON Schema (draft 7) of models in TOML, for editors: docs/models.md.

@@ -49,7 +49,7 @@ struct CacheInfo {
 /// Limit for all entries together, in bytes: $GLOAM_CACHE_SIZE, such as 500M or 20G (powers of
 /// 1024; 0 = no cache), 10 GiB by default. Errors: the variable is not a valid size.
 Result<uint64_t> cache_limit();
-/// Errors: a folder that cannot be read, those of cache_limit().
+/// Errors: a folder that cannot be read; as for cache_limit().
 Result<CacheInfo> cache_info();
 /// Removes all entries, or all of one kind, and returns the removed ones by kind. Files that are
 /// not entries stay. Errors: no such kind, a folder or entry that cannot be changed.

@@ -1,6 +1,6 @@
 #pragma once
-// Pictures and scans of given Snapshots, without a running simulation: of a replay, of a state that
-// was edited, under another look.
+// Images and scans of given Snapshots, without a running simulation: of a replay, of an edited
+// state, with another appearance.
 
 #include <memory>
 #include <span>
@@ -14,24 +14,27 @@
 
 namespace gloam {
 
-/// Renders Snapshots of one World. One thread at a time; several renderers may share a World.
+/// Renders Snapshots of one World. Use it from one thread at a time; several renderers may share a
+/// World.
 class SceneRenderer {
  public:
-  /// Loads all that pictures show. Errors: files that cannot be read, no memory.
+  /// Loads all data for rendering. Errors: files that cannot be read, no memory.
   static Result<SceneRenderer> create(const World& world);
   SceneRenderer(SceneRenderer&&) noexcept;
   SceneRenderer& operator=(SceneRenderer&&) noexcept;
   ~SceneRenderer();
 
-  /// A picture whose exposure begins at the first Snapshot and lasts to the last one: one Snapshot
-  /// is an instant, what moves is sharp. Motion counts from the Snapshot rendered before for this
-  /// camera. `request.rate` and `request.required` mean nothing. The pixels are those that an open
-  /// stream of the same request gives for the same instants, frame number and seed. Errors: no such
-  /// camera or output, a Snapshot of another World, no Snapshot, the output events.
+  /// Renders an image whose exposure begins at the first Snapshot and ends at the last one; with
+  /// one Snapshot, an instant without motion blur. Motion is relative to the Snapshot previously
+  /// rendered for this camera. `request.rate` and `request.required` are ignored. The pixels equal
+  /// the output of an open stream with the same request, for the same instants, frame number and
+  /// seed. Errors: no such camera or output, a Snapshot of another World, no Snapshot, the output
+  /// events.
   Result<std::shared_ptr<const CameraFrame>> render(std::span<const Snapshot> exposure,
                                                     const CameraRequest& request,
                                                     int64_t frame_index = 0);
-  /// One scan of a [[lidar]] from the first Snapshot to the last one, evenly spaced: 2 or more.
+  /// Computes one scan of a [[lidar]] from the first Snapshot to the last one, evenly spaced: 2 or
+  /// more.
   Result<std::shared_ptr<const LidarScan>> scan(std::span<const Snapshot> sweep,
                                                 const LidarRequest& request,
                                                 int64_t scan_index = 0);

@@ -8,7 +8,7 @@
 
 namespace gloam {
 
-/// A place in a text file that a person wrote. `line` and `column` count from 1; 0 = unknown.
+/// A location in a text file of the user. `line` and `column` count from 1; 0 = unknown.
 struct SourceLoc {
   std::string file;
   int line = 0;
@@ -17,20 +17,20 @@ struct SourceLoc {
 
 /// Kind of a failure; it decides the exit code of the program.
 enum class ErrorKind {
-  kInput,        ///< a file or value the user gave is wrong: exit 1
-  kIo,           ///< reading or writing failed (permission, disk full, port in use): exit 1
-  kUsage,        ///< the command line or the call is wrong: exit 2
-  kPartial,      ///< the run stopped early, the recording so far is complete and readable: exit 3
-  kDiverged,     ///< physics left the finite numbers; the last good state is kept: exit 3
-  kUnsupported,  ///< valid input that this build cannot do: exit 1
-  kInterrupted,  ///< the user stopped it: exit 130
+  kInput,     ///< a file or value from the user is wrong: exit 1
+  kIo,        ///< reading or writing failed (permission, disk full, port in use): exit 1
+  kUsage,     ///< the command line or the call is wrong: exit 2
+  kPartial,   ///< the run stopped early, the recording so far is complete and readable: exit 3
+  kDiverged,  ///< physics produced a value that is not finite; the last valid state is kept: exit 3
+  kUnsupported,  ///< valid input that this build does not support: exit 1
+  kInterrupted,  ///< stopped by the user: exit 130
 };
 
-/// One failure: what is wrong, where, and what to do about it.
+/// One failure: the problem, its location and a remedy.
 struct [[nodiscard]] Error {
   ErrorKind kind = ErrorKind::kInput;
   std::string message;    ///< one sentence without a final full stop
-  SourceLoc loc = {};     ///< place in the user's files; empty when there is none
+  SourceLoc loc = {};     ///< location in the user's files; empty if there is none
   std::string hint = {};  ///< remedy; may be empty
 
   /// "file:line:column: message (hint)", one line.
@@ -94,7 +94,7 @@ class [[nodiscard]] Status {
     return std::move(GLOAM_CONCAT(gloam_try_, __LINE__)).error(); \
   declaration = std::move(GLOAM_CONCAT(gloam_try_, __LINE__)).value()
 
-/// Returns the Error of a Status (or Result) from this function if it is one.
+/// Returns the Error of a Status (or Result) from this function, if there is one.
 #define GLOAM_TRY_STATUS(expression)                                \
   if (auto gloam_try_status = (expression); !gloam_try_status.ok()) \
   return std::move(gloam_try_status).error()

@@ -18,7 +18,7 @@
 
 namespace gloam {
 
-/// Value of Progress::what while a stopped job finishes its files.
+/// Value of `Progress::what` while a stopped job finishes its files.
 inline constexpr const char* kFinishingFiles = "finishing the files";
 
 struct RunRequest {
@@ -63,8 +63,8 @@ void set_record_outputs(const std::vector<std::string>& outputs, Scene* scene);
 Result<RunReport> run_and_record(const World& world, const RunRequest& request,
                                  const ProgressCallback& progress);
 
-/// Renders stills of the named cameras at one time. Outputs are those that CameraRequest accepts.
-/// Error: unknown camera, time < 0.
+/// Renders stills of the named cameras at one time. Outputs as in CameraRequest. Error: unknown
+/// camera, time < 0.
 Result<std::vector<CameraFrame>> render_stills(const World& world, double time,
                                                const std::vector<CameraRequest>& requests,
                                                const ProgressCallback& progress);

@@ -1,7 +1,6 @@
 #pragma once
-// Scene: what the user wrote. Freely editable until compiled into a World. Every node knows its
-// file and line. One options struct per feature: the same struct is filled from TOML, C++ and
-// (later) Python.
+// Scene: the user's description, freely editable until it is compiled into a World. Every node
+// stores its file and line. There is one options struct per feature, used by TOML, C++ and Python.
 
 #include <filesystem>
 #include <optional>
@@ -74,12 +73,12 @@ struct Scene {
   std::vector<GoalOptions> goals = {};
   RecordOptions record = {};
   BridgeOptions bridge = {};
-  /// A bare MJCF or URDF is used as it stands: no prefix, nothing added, options unchanged. Then
-  /// this is its path and robots and environment are empty.
+  /// Path of a bare MJCF or URDF, which is used unchanged: no prefix, no additions, original
+  /// options. Robots and environment are then empty.
   std::filesystem::path bare_model = {};
 };
 
-/// Reads a scene (.toml) or wraps a bare model (.xml, .urdf). Every error names file and line.
+/// Reads a scene (.toml) or wraps a bare model (.xml, .urdf). Errors name file and line.
 Result<Scene> load_scene(const std::filesystem::path& path, const FileAccess& access = {});
 
 /// Reads a scene from text, as if it were a file in `folder`: relative paths start there. Errors
@@ -87,7 +86,7 @@ Result<Scene> load_scene(const std::filesystem::path& path, const FileAccess& ac
 Result<Scene> parse_scene(std::string_view toml, const std::filesystem::path& folder,
                           const FileAccess& access = {});
 
-/// Overrides one option, as a line of the scene file would: `path` is "sim.duration",
+/// Sets one option like a line of the scene file: `path` is "sim.duration",
 /// "robot.NAME.controller.kp", "camera.NAME.width" …, `toml_value` is the text after "=". Quotes
 /// around a string may be left out. The Scene is unchanged on error.
 Status set_option(Scene& scene, std::string_view path, std::string_view toml_value);

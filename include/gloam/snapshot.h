@@ -18,7 +18,7 @@ namespace gloam {
 
 struct SnapshotData;  // src/sim/snapshots/snapshot.h
 
-/// Reads of one joint in one Snapshot. The spans live as long as the Snapshot.
+/// State of one joint in one Snapshot. The spans are valid as long as the Snapshot.
 struct JointState {
   /// 1 (hinge [rad], slide [m]), 4 (ball, wxyz) or 7 (free: xyz, wxyz).
   std::span<const double> qpos;
@@ -27,7 +27,7 @@ struct JointState {
   double velocity() const { return qvel[0]; }
 };
 
-/// Values of one MuJoCo sensor and the time of the state they were computed from.
+/// Values of one MuJoCo sensor and the time of the state from which they were computed.
 struct SensorState {
   std::span<const double> values;
   /// [s] one timestep before Snapshot::time after a step, see ARCHITECTURE.md "Poses".
@@ -47,9 +47,9 @@ class Snapshot {
 
   JointState operator[](Joint joint) const;
   SensorState operator[](SensorHandle sensor) const;
-  double control(Actuator actuator) const;  ///< the first of several
+  double control(Actuator actuator) const;  ///< the first value if there are several
 
-  World world() const;  ///< World of this instant; another one after a recompile
+  World world() const;  ///< World of this instant; a recompile replaces it
 
   const SnapshotData& data() const { return *data_; }
 
@@ -68,7 +68,7 @@ struct TendonState {
   double length = 0, velocity = 0;  ///< [m] or of a fixed tendon its joints' unit; per second
 };
 
-/// Two geoms that touch. Without a geom: of a flex.
+/// Two geoms in contact. A missing geom means that a flex is in contact.
 struct ContactState {
   Geom geoms[2];
   Vec3 position;        ///< between the surfaces [m]
@@ -78,10 +78,10 @@ struct ContactState {
   Vec3 force, torque;   ///< on the second geom, world axes [N], [N m]
 };
 
-/// All that MuJoCo knows of an instant, as one forward pass tells from its Snapshot: poses,
-/// velocities, forces of actuators and contacts, any array by name. Keeps its memory from one
-/// Snapshot to the next; used by one thread at a time. Errors: a handle of another World than the
-/// last Snapshot's, a name that there is not.
+/// All quantities that MuJoCo computes from a Snapshot in one forward pass: poses, velocities,
+/// forces of actuators and contacts, any array by name. Keeps its memory from one Snapshot to the
+/// next. Use it from one thread at a time. Errors: a handle of another World than the last
+/// Snapshot's, an unknown name.
 class Instant {
  public:
   Instant();
@@ -89,23 +89,24 @@ class Instant {
   Instant(Instant&&) noexcept;
   Instant& operator=(Instant&&) noexcept;
 
-  /// Comes before all else. Error: MuJoCo's.
+  /// Has to be called first. Error: reported by MuJoCo.
   Status solve(const Snapshot& snapshot);
 
   Result<BodyState> body(Body body) const;
   Result<TendonState> tendon(Tendon tendon) const;
   Result<double> force(Actuator actuator) const;  ///< in the actuator's space: N, N m
   std::vector<ContactState> contacts() const;
-  /// The same into a vector whose memory is used again.
+  /// The same, into a vector whose memory is reused.
   void contacts(std::vector<ContactState>* contacts) const;
 
-  /// A field of mjData, mjModel or its options ("opt.gravity") by its name in MuJoCo, as numbers:
-  /// all of it row by row, or what belongs to one named element: value("xfrc_applied",
-  /// "go1/trunk"), value("qpos", "arm/elbow"), value("geom_friction", "floor").
+  /// Returns the numbers of a field of mjData, mjModel or its options ("opt.gravity") by its name
+  /// in MuJoCo: all rows, or the rows of one named element: value("xfrc_applied", "go1/trunk"),
+  /// value("qpos", "arm/elbow"), value("geom_friction", "floor").
   Result<std::vector<double>> value(const std::string& field,
                                     const std::string& element = {}) const;
 
-  /// MuJoCo's own, after a solve() that was ok, until the next; for those who link it.
+  /// MuJoCo's own structs, valid from a successful solve() until the next; for programs that link
+  /// MuJoCo.
   const mjModel_* model() const;
   const mjData_* data() const;
 

@@ -12,14 +12,15 @@ namespace gloam {
 
 struct SnapshotRequest {
   Rational rate = {0, 1};  ///< per second of simulation time [Hz]; 0 = every step
-  bool required = false;   ///< the simulation waits for it; else Snapshots are lost, oldest first
-  int capacity = 64;       ///< Snapshots that wait for the reader, 1 … 65536
+  bool required = false;   ///< true: the simulation waits for the reader; false: Snapshots may be
+                           ///< lost, oldest first
+  int capacity = 64;       ///< queued Snapshots, 1 … 65536
   EndCallback on_end = {};
 };
 
 class SnapshotStream : public Stream {};
-/// Comes on the stream's own thread, Snapshots in order. After a recompile they are of another
-/// World: Snapshot::world().
+/// Called on the stream's own thread, for Snapshots in order. A recompile changes their World:
+/// Snapshot::world().
 using SnapshotCallback = std::function<void(const Snapshot&)>;
 
 }  // namespace gloam

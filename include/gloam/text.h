@@ -1,14 +1,14 @@
 #pragma once
-// Texts of strangers (names, keys, messages) where people see them.
+// Display of untrusted text (names, keys, messages).
 
 #include <string>
 #include <string_view>
 
 namespace gloam {
 
-/// `text` as a terminal shows and does not obey it: control characters, separators of lines and
-/// marks of direction become \n, \x1b, \u009b, \u202e, and bytes that are no UTF-8 \x9b. `kept`:
-/// control characters that stay as they are.
+/// Returns `text` in a form that cannot control a terminal: control characters, line separators and
+/// direction marks are escaped as \n, \x1b, \u009b, \u202e, and bytes that are not UTF-8 as \x9b.
+/// `kept`: control characters that are not escaped.
 std::string printable(std::string_view text, std::string_view kept = {});
 
 }  // namespace gloam

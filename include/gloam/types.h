@@ -23,8 +23,7 @@ struct Pose {
   bool operator==(const Pose&) const = default;
 };
 
-/// An exact rate or period: `num / den`. Schedules are counted in integers, never compared as
-/// floats.
+/// An exact rate or period: `num / den`. Schedules use integer arithmetic and never compare floats.
 struct Rational {
   int64_t num = 0;
   int64_t den = 1;

@@ -1,7 +1,7 @@
 #pragma once
-// The view: one web page on loopback that shows a running Simulation and lets its user pause, step,
-// push and look around; and the pictures that it sends. The protocol between page and server is in
-// docs/view_protocol.md.
+// The view: a web page on loopback that shows a running Simulation and lets its user pause, step,
+// push bodies and move the camera; and the encoder of its images. docs/view_protocol.md describes
+// the protocol between page and server.
 
 #include <cstdint>
 #include <memory>
@@ -20,34 +20,34 @@ class LogPlayer;  // gloam/log_player.h
 struct ViewOptions {
   int port = 8080;                 ///< 0 = any free port, else 1 … 65535
   std::string host = "127.0.0.1";  ///< a loopback name only: 127.x.y.z, localhost or ::1
-  int max_clients = 32;            ///< open connections, watching or not, 1 … 1024
-  std::string camera = "free";     ///< shown first: full name, or "free"
+  int max_clients = 32;            ///< limit of open connections, 1 … 1024
+  std::string camera = "free";     ///< initial camera: full name, or "free"
   RenderOptions render = {.tier = "direct", .spp = 1, .denoise = false};
   int width = 0, height = 0;    ///< [px]; 0 = the camera's own
-  double rate = 20;             ///< pictures per second of simulation time, (0, 240]
-  Pace pace = Pace::kRealTime;  ///< that the page sets
+  double rate = 20;             ///< images per second of simulation time, (0, 240]
+  Pace pace = Pace::kRealTime;  ///< pace that the server sets
   double speed = 1;             ///< simulated seconds per second, 0.001 … 100
-  LogPlayer* player = nullptr;  ///< whose simulation it is: the page goes about in time
+  LogPlayer* player = nullptr;  ///< player of the simulation, for a time line in the page
 };
 
-/// Serves the page from threads of its own until stopped or destroyed. The Simulation and the
-/// LogPlayer must live longer. Thread-safe.
+/// Serves the page from its own threads until it is stopped or destroyed. The Simulation and the
+/// LogPlayer must outlive it. Thread-safe.
 class ViewServer {
  public:
-  /// Starts to listen and sets the pace; whether the simulation runs or is
-  /// paused stays as it is. Errors: usage (host is not loopback, a number out of range), I/O (port
-  /// in use), what open_camera says.
+  /// Starts to listen and sets the pace; does not pause or resume the simulation. Errors: usage
+  /// (host is not loopback, a number out of range), I/O (port in use), as for open_camera.
   static Result<std::unique_ptr<ViewServer>> start(Simulation& simulation,
                                                    const ViewOptions& options);
   ViewServer(const ViewServer&) = delete;
   ViewServer& operator=(const ViewServer&) = delete;
-  /// Stops.
+  /// Calls stop().
   ~ViewServer();
 
-  /// Address for the browser, token included: a secret, print it for the user and nowhere else.
+  /// Address for the browser, including the token. It is a secret: show it to the user only.
   std::string url() const;
   int port() const;
-  /// Tells the clients, lets go of a dragged body and joins the threads; at once the second time.
+  /// Notifies the clients, releases a dragged body and joins the threads. A second call returns
+  /// immediately.
   void stop();
 
  private:
@@ -57,7 +57,7 @@ class ViewServer {
 };
 
 /// Baseline JPEG, 4:2:0, of 8-bit sRGB (height x width x 3). `quality` 1 … 100. Errors: `rgb` does
-/// not have the size of the picture, a side is not 1 … 65500 px, no memory.
+/// not have the size of the image, a side is not 1 … 65500 px, no memory.
 Result<std::vector<uint8_t>> encode_jpeg(int width, int height, std::span<const uint8_t> rgb,
                                          int quality = 88);
 
