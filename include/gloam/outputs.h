@@ -1,6 +1,6 @@
 #pragma once
-// Outputs of cameras and runs: one table of the channels of a CameraFrame, one of the files that
-// are made of them. All other lists of outputs are derived from these two.
+// Outputs of cameras and runs: one table of the channels of a CameraFrame, and one of the files
+// written from them. All other lists of outputs are derived from these two tables.
 
 #include <algorithm>
 #include <array>
@@ -14,11 +14,11 @@
 
 namespace gloam {
 
-/// Work of a renderer that a channel is made from.
+/// Part of the rendering that produces a channel.
 enum class ChannelSource : uint8_t {
   kLight,    ///< samples of light
-  kSurface,  ///< the first surface: where it is, and which
-  kDetails,  ///< its normal, albedo and motion as well
+  kSurface,  ///< first surface: its position and identity
+  kDetails,  ///< also its normal, albedo and motion
   kCover,    ///< pixels of each object, hidden or not
 };
 
@@ -26,7 +26,7 @@ enum class ChannelSource : uint8_t {
 struct CameraChannel {
   std::string_view name;
   ChannelSource source;
-  uint64_t bytes;               ///< bytes of a pixel in a CameraFrame
+  uint64_t bytes;               ///< bytes per pixel in a CameraFrame
   std::string_view model = "";  ///< table [camera.MODEL] that it needs; "" = none
   bool (*has_model)(const CameraSensing&) = [](const CameraSensing&) { return true; };
 };
@@ -66,11 +66,11 @@ constexpr const CameraChannel* find_camera_channel(std::string_view name) {
 enum class FileFormat : uint8_t {
   kVideo,  ///< H.264
   kCsv,
-  kPng8,          ///< three values a pixel
-  kPng16,         ///< several values of a pixel stand side by side in its row
+  kPng8,          ///< three values per pixel
+  kPng16,         ///< the values of a pixel are side by side in its row
   kMillimetres,   ///< 16-bit PNG of [m]
   kCentikelvins,  ///< 16-bit PNG of [K]
-  kIds,           ///< 16-bit PNG, of worlds with more parts 24-bit
+  kIds,           ///< 16-bit PNG; 24-bit for worlds with more parts
   kExr,
   kJson,
 };
@@ -81,16 +81,17 @@ using CameraPlane =
                  std::vector<uint32_t> CameraFrame::*, std::vector<float> CameraFrame::*,
                  std::vector<Event> CameraFrame::*, std::vector<ObjectView> CameraFrame::*>;
 
-/// A file that a recording, or a still, makes of a channel.
+/// A file that a recording or a still writes from a channel.
 struct CameraFile {
-  std::string_view output;  ///< output that asks for it, as in [record]; one may have several files
+  std::string_view
+      output;  ///< output that selects it, as in [record]; an output may have several files
   std::string_view channel;
   FileFormat format;
   CameraPlane plane;
   /// Folder of a recording, CAMERA/depth_exr/000000.exr; "" = one file of all frames.
   std::string_view folder = "";
   std::string_view suffix = "";     ///< suffix of a still: NAME_depth.exr
-  std::string_view exr_names = "";  ///< channels of an EXR, a blank between two
+  std::string_view exr_names = "";  ///< channels of an EXR, separated by blanks
 
   bool is_of_each_frame() const { return !folder.empty(); }
   std::string_view extension() const { return suffix.substr(suffix.rfind('.') + 1); }
@@ -139,12 +140,54 @@ inline constexpr auto kCameraOutputs = [] {
   return names;
 }();
 
-/// Outputs of a run that can be recorded: those of all cameras, and the rest.
+/// Outputs of a run that can be recorded: all camera outputs, and the others.
 inline constexpr auto kRecordOutputs = [] {
   constexpr std::string_view kRest[] = {"lidar", "metrics", "contact_sheet", "sensors", "state"};
   std::array<std::string_view, kCameraOutputs.size() + std::size(kRest)> all;
   std::ranges::copy(kRest, std::ranges::copy(kCameraOutputs, all.begin()).out);
   return all;
 }();
+
+/// Names accepted by cameras, stills and recordings: a channel, which selects every file written
+/// from it for each frame, or a single file ("depth_exr").
+template <size_t kCount>
+constexpr auto with_channels(const std::array<std::string_view, kCount>& outputs) {
+  constexpr auto is_new = [](const CameraChannel& channel) {
+    return std::ranges::find(kCameraOutputs, channel.name) == kCameraOutputs.end();
+  };
+  std::array<std::string_view, kCount + std::ranges::count_if(kCameraChannels, is_new)> all;
+  auto* end = std::ranges::copy(outputs, all.begin()).out;
+  for (const CameraChannel& channel : kCameraChannels)
+    if (is_new(channel)) *end++ = channel.name;
+  return all;
+}
+inline constexpr auto kCameraOutputNames = with_channels(kCameraOutputs);
+inline constexpr auto kOutputNames = with_channels(kRecordOutputs);
+
+/// Expands channels to the outputs of a recording: {"depth"} -> {"depth_png", "depth_exr"}. Other
+/// names stay.
+inline std::vector<std::string> recorded_outputs(const std::vector<std::string>& names) {
+  std::vector<std::string> outputs;
+  const auto add = [&outputs](std::string_view name) {
+    if (std::ranges::find(outputs, name) == outputs.end()) outputs.emplace_back(name);
+  };
+  for (const std::string& name : names) {
+    const bool is_output = std::ranges::find(kRecordOutputs, name) != kRecordOutputs.end();
+    if (is_output || find_camera_channel(name) == nullptr) {
+      add(name);
+      continue;
+    }
+    for (const CameraFile& file : kCameraFiles)
+      if (file.channel == name && file.is_of_each_frame()) add(file.output);
+  }
+  return outputs;
+}
+
+/// Channel of an output, or of this name; null if there is none.
+constexpr const CameraChannel* find_output_channel(std::string_view name) {
+  if (const CameraChannel* channel = find_camera_channel(name)) return channel;
+  const auto* file = std::ranges::find(kCameraFiles, name, &CameraFile::output);
+  return file != kCameraFiles.end() ? find_camera_channel(file->channel) : nullptr;
+}
 
 }  // namespace gloam

@@ -1,6 +1,6 @@
 #pragma once
-// People and vehicles that move by themselves: [[agent]], [[crowd]], [navigation]. Part of
-// gloam/scene.h; docs/agents.md has examples.
+// Autonomous people and vehicles: [[agent]], [[crowd]], [navigation]. Part of gloam/scene.h;
+// docs/agents.md has examples.
 
 #include <cstdint>
 #include <filesystem>
@@ -13,25 +13,25 @@
 
 namespace gloam {
 
-/// [navigation]: where agents can go, as Recast finds it from the colliders.
+/// [navigation]: navigable ground of agents, computed by Recast from the colliders.
 struct NavigationOptions {
   double cell = 0.1;        ///< edge of its voxels in the plane [m]
   double headroom = 1.9;    ///< [m]
   double radius = 0.3;      ///< distance that people keep from walls [m]
-  double climb = 0.22;      ///< step that is taken without stairs [m]
+  double climb = 0.22;      ///< maximum step height without stairs [m]
   double slope = 40;        ///< [deg]
   Rational rate = {10, 1};  ///< decisions per second of simulation time
   SourceLoc loc = {};
 };
 
-/// One place on the way of an agent.
+/// One waypoint of an agent.
 struct WaypointOptions {
   Vec3 position = {};  ///< on the ground below [m]
   double pause = 0;    ///< time that the agent waits there [s]
   SourceLoc loc = {};
 };
 
-/// [[agent]]: someone or something that moves by itself and is no robot.
+/// [[agent]]: a person or vehicle that moves by itself and is not a robot.
 struct AgentOptions {
   std::string name = {};                    ///< unique
   std::string kind = "person";              ///< person | cart | forklift | car
@@ -39,13 +39,13 @@ struct AgentOptions {
   double heading = 0;                       ///< at the start, from +x to +y [deg]
   uint64_t seed = 0;                        ///< seed of body, clothes, paint and decisions
   std::optional<double> height = {};        ///< height of a person [m]; default: random
-  std::optional<double> speed = {};         ///< preferred speed [m/s]; default: by its kind
+  std::optional<double> speed = {};         ///< preferred speed [m/s]; default: depends on its kind
   std::string behavior = "wander";          ///< stand | wander | route | spline | tree
   std::vector<WaypointOptions> route = {};  ///< stations in order, or a spline's points
-  bool loop = true;                         ///< from the last of them to the first
+  bool loop = true;                         ///< continue from the last waypoint to the first
   std::filesystem::path tree = {};          ///< behaviour tree, BehaviorTree.CPP's XML
   double start = 0;                         ///< time of its first step [s]
-  bool yields = true;  ///< can be pushed aside, and stops for obstacles; false: goes on
+  bool yields = true;  ///< can be pushed aside, and stops for obstacles; false: keeps moving
   SourceLoc loc = {};
 };
 

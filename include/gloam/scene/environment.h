@@ -14,15 +14,16 @@ namespace gloam {
 
 /// [environment]: everything that is not a robot.
 struct EnvironmentOptions {
-  /// MJCF, or a glTF, GLB, OBJ, STL or PLY file of a place; empty = nothing but a floor when a TOML
-  /// scene has robots, nothing otherwise
+  /// MJCF, or a glTF, GLB, OBJ, STL or PLY file of a place; empty = only a floor if a TOML scene
+  /// has robots, otherwise nothing
   std::filesystem::path file = {};
   /// Axis of a mesh file that points up: y | z; auto = y for glTF, else z.
   std::string up = "auto";
   double unit = 1;                 ///< length of one unit of a mesh file [m]
   std::string colliders = "auto";  ///< colliders of each node of a mesh file, as in [[object]]
-  /// Nodes of a mesh file whose name another node or the scene has: rename = the later becomes
-  /// NAME_2 …, with a note; refuse = an error; prefix = all become FILE_STEM/NODE.
+  /// Nodes of a mesh file whose name is already used by another node or by the scene: "rename"
+  /// makes the later one NAME_2 …, with a note; "refuse" is an error; "prefix" renames all nodes to
+  /// FILE_STEM/NODE.
   std::string clash = "rename";
   // Instead of a file, one of the generators:
   std::optional<HouseOptions> house = {};
@@ -35,7 +36,7 @@ struct EnvironmentOptions {
   SourceLoc loc = {};
 };
 
-/// A floor that can be walked on.
+/// A walkable floor.
 struct Region {
   std::string name = {};     ///< "kitchen"
   std::string label = {};    ///< kind: room kinds, "aisle", "stairs"

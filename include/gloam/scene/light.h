@@ -13,18 +13,18 @@
 
 namespace gloam {
 
-/// On for `duty` of every period.
+/// On during the fraction `duty` of every period.
 struct OnOffOptions {
   double period = 1;  ///< [s], > 0
   double duty = 0.5;  ///< fraction of the period, 0 … 1
-  double phase = 0;   ///< fraction of a period that is over at time 0, 0 … 1
+  double phase = 0;   ///< fraction of a period elapsed at time 0, 0 … 1
 };
-/// The light's level from a time on.
+/// The light's level at a time.
 struct LightKeyOptions {
   double time = 0;   ///< [s], rising
   double level = 1;  ///< >= 0, 1 = the lamp's full strength
 };
-/// Ripple at twice the mains' frequency, with the mean 1.
+/// Ripple at twice the mains frequency, with mean 1.
 struct MainsOptions {
   double frequency = 50;  ///< frequency of the mains [Hz], > 0
   double depth = 0.3;     ///< (max - min) / (max + min), 0 … 1
@@ -32,67 +32,71 @@ struct MainsOptions {
 /// A fluorescent tube that is switched on.
 struct StarterOptions {
   double at = 0;        ///< [s]
-  double warm_up = 20;  ///< time constant of its growth to full light [s], > 0
+  double warm_up = 20;  ///< time constant for reaching full light [s], > 0
 };
-/// Noise with the mean 1.
+/// Noise with mean 1.
 struct FlameOptions {
   double bandwidth = 9;  ///< [Hz], > 0
   double depth = 0.4;    ///< 0 … 1
 };
-/// [light.schedule]: how a lamp changes over simulation time: the product of what is given.
+/// [light.schedule]: changes of a lamp over simulation time, the product of all given factors.
 struct LightScheduleOptions {
   std::optional<OnOffOptions> on_off = {};
   std::vector<LightKeyOptions> keys = {};
-  bool hold = false;  ///< each key's level holds up to the next; else straight lines between them
+  bool hold = false;  ///< true: each key's level holds until the next; false: linear interpolation
   std::optional<MainsOptions> mains = {};
   std::optional<StarterOptions> starter = {};
   std::optional<FlameOptions> flame = {};
   SourceLoc loc = {};
 };
 
-/// [light.motion]: how a lamp turns or swings on simulation time. It has `spin` or `sway`.
+/// [light.motion]: rotation (`spin`) or swing (`sway`) of a lamp over simulation time.
 struct LightMotionOptions {
-  std::optional<double> spin = {};  ///< turns about `axis` [rev/min], counter-clockwise seen
-                                    ///< against it; less than 0 = clockwise
-  std::optional<double> sway = {};  ///< greatest angle of a hanging lamp's swing [deg]
-  std::optional<double> cord = {};  ///< sway: from the lamp up to where it hangs [m], which sets
-                                    ///< its period; 1
-  /// Axis of the turn, in the frame of `body`; 0, 0, 1; for a sway 1, 0, 0.
+  std::optional<double> spin = {};  ///< rotation about `axis` [rev/min], counter-clockwise as seen
+                                    ///< against the axis; < 0 = clockwise
+  std::optional<double> sway = {};  ///< amplitude of a hanging lamp's swing [deg]
+  std::optional<double> cord = {};  ///< sway: distance from the lamp to its suspension point [m],
+                                    ///< which determines its period; 1
+  /// Axis of rotation in the frame of `body`; 0, 0, 1; for a sway 1, 0, 0.
   std::optional<Vec3> axis = {};
-  double phase = 0;  ///< fraction of a turn or swing that is over at time 0, 0 … 1
+  double phase = 0;  ///< fraction of a rotation or swing elapsed at time 0, 0 … 1
   SourceLoc loc = {};
 };
 
-/// [blackout]: all lamps go out: those of the place, of models and of the scene, and what glows.
+/// [blackout]: turns off all lamps of the place, of models and of the scene, and all glowing
+/// materials.
 struct BlackoutOptions {
-  double at = 0;                     ///< when [s]
-  std::optional<double> until = {};  ///< when they come back [s], > at; empty = never
-  bool starter = false;  ///< lamps come back as fluorescent tubes do, each in its own time
-  std::vector<std::string> except = {};  ///< names of lamps, or materials that glow, that stay
-                                         ///< as they are; * stands for any text
+  double at = 0;                     ///< start [s]
+  std::optional<double> until = {};  ///< end [s], > at; empty = never
+  bool starter = false;  ///< lamps turn on again like fluorescent tubes, each with its own delay
+  std::vector<std::string> except =
+      {};  ///< names of lamps or glowing materials that are not affected; * matches any text
   /// Names, as in `except`, of lamps that shine only during the blackout.
   std::vector<std::string> emergency = {};
   SourceLoc loc = {};
 };
 
-/// [[light]]: a lamp added to the scene. It shines along its own -Z. Its strength is exactly one of
-/// intensity, flux, luminance and illuminance; with `ies` it may be left to the file.
+/// [[light]]: a lamp added to the scene, shining along its own -Z. Its strength is given by exactly
+/// one of intensity, flux, luminance and illuminance; with `ies` it can be omitted, and is then
+/// that of the file.
 struct LightOptions {
-  std::string name = {};                   ///< unique
-  std::string type = {};                   ///< point spot directional rect disk sphere mesh
-  std::string body = {};                   ///< full name of the body it is fixed to; empty = world
-  Vec3 position = {};                      ///< in the frame of `body` [m]
-  std::optional<Vec3> look_at = {};        ///< point it shines at, in the same frame [m]
-  std::optional<Quat> orientation = {};    ///< instead of look_at; with neither it shines along -Z
-  std::optional<double> intensity = {};    ///< [cd]: point, spot: the most; rect, disk: along the
-                                           ///< axis; sphere
-  std::optional<double> flux = {};         ///< [lm]: all but directional
+  std::string name = {};                 ///< unique
+  std::string type = {};                 ///< point spot directional rect disk sphere mesh
+  std::string body = {};                 ///< full name of the body it is fixed to; empty = world
+  Vec3 position = {};                    ///< in the frame of `body` [m]
+  std::optional<Vec3> look_at = {};      ///< target point, in the same frame [m]
+  std::optional<Quat> orientation = {};  ///< instead of look_at; with neither it shines along -Z
+  std::optional<double> intensity =
+      {};  ///< [cd]: point, spot: the maximum; rect, disk: along the axis; sphere
+  std::optional<double> flux = {};         ///< [lm]: all types except directional
   std::optional<double> luminance = {};    ///< [cd/m²]: point and spot with a radius, areas
-  std::optional<double> illuminance = {};  ///< [lx] on a surface that faces it: directional
-  std::optional<Vec3> color = {};  ///< linear Rec. 709; hue only, brightness is the strength
+  std::optional<double> illuminance = {};  ///< [lx] on a surface facing the light: directional
+  std::optional<Vec3> color =
+      {};  ///< linear Rec. 709; only the hue, the strength determines the brightness
   std::optional<double> temperature = {};          ///< colour of a black body [K], 1000 … 20000
   std::optional<std::array<double, 2>> size = {};  ///< rect: along its x and y [m]
-  std::optional<double> radius = {};    ///< disk, sphere; point, spot: of the luminous sphere [m]
+  std::optional<double> radius =
+      {};  ///< disk, sphere; point, spot: radius of the luminous sphere [m]
   std::optional<double> angle = {};     ///< spot: half angle of the cone, 45; directional: angular
                                         ///< diameter, 0 [deg]
   std::optional<double> softness = {};  ///< spot: outer fraction of the cone over which it fades, 0

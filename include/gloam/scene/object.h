@@ -1,6 +1,6 @@
 #pragma once
-// Things in a scene that are no robots: props of the catalogue ([[prop]]), bodies, visuals and
-// height fields made of mesh files ([[object]], [[visual]], [[hfield]]). Part of gloam/scene.h.
+// Objects in a scene other than robots: props of the catalogue ([[prop]]), and bodies, visuals and
+// height fields made from mesh files ([[object]], [[visual]], [[hfield]]). Part of gloam/scene.h.
 
 #include <array>
 #include <cstdint>
@@ -14,24 +14,25 @@
 
 namespace gloam {
 
-/// [[prop]]: one thing of the catalogue (`gloam props` lists it), in any scene.
+/// [[prop]]: one object of the catalogue (listed by `gloam props`), in any scene.
 struct PropOptions {
   std::string name = {};                 ///< unique; of its body
   std::string kind = {};                 ///< kind in the catalogue: gloam props
   uint64_t seed = 0;                     ///< seed of the variant
   Vec3 position = {};                    ///< point on the floor below its middle, in the world [m]
   std::optional<Quat> orientation = {};  ///< rotation in the world; its front is +x
-  std::optional<Vec3> size = {};   ///< depth, width, height, as far as the kind can have them [m]
-  std::optional<Vec3> color = {};  ///< linear Rec. 709, 0 … 1, of what is coloured about it
-  std::optional<bool> loose = {};  ///< can be pushed and falls; empty = as its kind usually is
+  std::optional<Vec3> size = {};   ///< depth, width, height, within the limits of the kind [m]
+  std::optional<Vec3> color = {};  ///< colour of its coloured parts, linear Rec. 709, 0 … 1
+  std::optional<bool> loose = {};  ///< can be pushed and falls; empty = the default of its kind
   SourceLoc loc = {};
 };
 
-/// [[object]]: a glTF, GLB, OBJ, STL or PLY file, or one of its nodes, made a body that collides.
+/// [[object]]: a body with colliders made from a glTF, GLB, OBJ, STL or PLY file, or from one of
+/// its nodes.
 struct ObjectOptions {
   std::string name = {};            ///< unique; of its body
   std::filesystem::path file = {};  ///< relative to the scene file
-  /// Name of a node of the file, the second of a name is NAME_2; empty = all.
+  /// Name of a node of the file (the second node of the same name is NAME_2); empty = all.
   std::string node = {};
   Pose X_WO = {};           ///< pose of the file's origin in the world
   Vec3 scale = {1, 1, 1};   ///< after `up`; not 0, < 0 mirrors; one number for all three
@@ -40,16 +41,17 @@ struct ObjectOptions {
   std::string motion = "dynamic";   ///< static | dynamic | mocap
   double density = 1000;            ///< density of its volume, unless `mass` is given [kg/m³]
   std::optional<double> mass = {};  ///< [kg]
-  /// box sphere capsule: the smallest around it; hull: convex; hulls: convex parts (CoACD); none;
-  /// auto: box, sphere or capsule where it is one, a hull where it is convex, else hulls.
+  /// box sphere capsule: the smallest enclosing one; hull: convex hull; hulls: convex parts
+  /// (CoACD); none; auto: box, sphere or capsule if the mesh is one, a hull if it is convex,
+  /// otherwise hulls.
   std::string colliders = "auto";
-  double concavity = 0.05;            ///< hulls: how far a part may be from its hull, 0.01 … 1
-  int max_hulls = 32;                 ///< hulls: at most, 1 … 256
+  double concavity = 0.05;            ///< hulls: maximum concavity of a part, 0.01 … 1
+  int max_hulls = 32;                 ///< hulls: maximum number, 1 … 256
   std::optional<Vec3> friction = {};  ///< sliding, torsional [m], rolling [m]
   SourceLoc loc = {};
 };
 
-/// [[hfield]]: ground sampled from a mesh file, as a height field of MuJoCo.
+/// [[hfield]]: ground sampled from a mesh file, as a MuJoCo height field.
 struct HeightFieldOptions {
   std::string name = {};            ///< unique; of its geom
   std::filesystem::path file = {};  ///< glTF, GLB, OBJ, STL or PLY, relative to the scene file
@@ -57,16 +59,17 @@ struct HeightFieldOptions {
   Vec3 scale = {1, 1, 1};           ///< after `up`; not 0, < 0 mirrors; one number for all three
   std::string up = "auto";  ///< y | z: axis of the file that points up; auto = y of glTF, else z
   double unit = 1;          ///< [m] of one unit of the file
-  /// Corners x, y of what is sampled, in the world [m]; empty = all of it.
+  /// Corners x, y of the sampled area, in the world [m]; empty = all of it.
   std::optional<std::array<double, 2>> low = {}, high = {};
-  double resolution = 0.1;  ///< between samples [m]
-  int layers = 1;           ///< 1: seen from above; more: also the floors below, as many, 1 … 8
+  double resolution = 0.1;  ///< distance between samples [m]
+  int layers =
+      1;  ///< number of layers, 1: the surface seen from above; more: also floors below it, 1 … 8
   std::optional<Vec3> friction = {};  ///< sliding, torsional [m], rolling [m]
-  bool drawn = true;                  ///< the file is drawn; false: the height field is
+  bool drawn = true;                  ///< true: render the file; false: render the height field
   SourceLoc loc = {};
 };
 
-/// [[visual]]: a glTF, GLB, OBJ, STL or PLY file that is drawn and has no physics.
+/// [[visual]]: a glTF, GLB, OBJ, STL or PLY file that is rendered and has no physics.
 struct VisualOptions {
   std::string name = {};            ///< unique; its materials are "NAME/MATERIAL"
   std::filesystem::path file = {};  ///< relative to the scene file
@@ -81,7 +84,7 @@ struct VisualOptions {
   SourceLoc loc = {};
 };
 
-/// One kind of the catalogue, as its variant 0 is.
+/// One kind of the catalogue, with the properties of its variant 0.
 struct PropInfo {
   std::string kind = {};
   std::string text = {};  ///< description

@@ -1,6 +1,6 @@
 #pragma once
-// Generated places: [environment.house] and its siblings. Part of gloam/scene.h;
-// docs/environments.md has pictures.
+// Generated places: [environment.house] and others. Part of gloam/scene.h; docs/environments.md has
+// images.
 
 #include <cstdint>
 #include <string>
@@ -13,21 +13,21 @@ namespace gloam {
 /// disc of `passage` / 2 can reach every room from there when all doors are open.
 struct HouseOptions {
   uint64_t seed = 1;           ///< seed of the house
-  int rooms = 6;               ///< hall included, 3 … 12; on two storeys 4 at least
+  int rooms = 6;               ///< including the hall, 3 … 12; at least 4 on two storeys
   int storeys = 1;             ///< 1 or 2
   double ceiling = 2.5;        ///< clear height of a storey [m], 2.2 … 4
-  double passage = 0.7;        ///< free width between things [m], 0.4 … 1.2
-  double clutter = 0.5;        ///< 0 bare … 1: small things lying about
-  std::string doors = "open";  ///< inner ones at the start: open ajar closed
-  double loose = 0.1;          ///< fraction of what could be pushed that can be, 0 … 1
+  double passage = 0.7;        ///< free width between objects [m], 0.4 … 1.2
+  double clutter = 0.5;        ///< 0 bare … 1: scattered small objects
+  std::string doors = "open";  ///< initial state of inner doors: open ajar closed
+  double loose = 0.1;          ///< fraction of movable objects that are loose, 0 … 1
   bool furnished = true;       ///< false: bare rooms
   bool openable = true;        ///< doors and drawers of furniture; each costs physics time
-  bool roof = true;            ///< false: no roof and no ceilings, to look in from above
+  bool roof = true;            ///< false: no roof and no ceilings, for views from above
   SourceLoc loc = {};
 };
 
-/// [environment.warehouse]: racks of goods on pallets, lanes for forklifts, dock doors. The world's
-/// origin is on free floor in the cross aisle.
+/// [environment.warehouse]: racks with goods on pallets, lanes for forklifts, dock doors. The
+/// world's origin is on free floor in the cross aisle.
 struct WarehouseOptions {
   uint64_t seed = 1;     ///< seed of the warehouse
   double length = 30;    ///< along x [m], 12 … 120
@@ -36,7 +36,7 @@ struct WarehouseOptions {
   double aisle = 2.8;    ///< width of the aisles between racks [m], 1.2 … 6
   int levels = 3;        ///< shelves of a rack above the floor, 1 … 6
   double fill = 0.8;     ///< fraction of the pallet places in use, 0 … 1
-  double clutter = 0.5;  ///< 0 bare … 1: things standing about on the floor
+  double clutter = 0.5;  ///< 0 bare … 1: objects standing on the floor
   double loose = 0.05;   ///< fraction of the goods that can move, 0 … 1
   int dock_doors = 3;    ///< 0 … 12
   SourceLoc loc = {};
@@ -49,77 +49,78 @@ struct OfficeOptions {
   double length = 20;          ///< along x [m], 10 … 60
   double width = 13;           ///< along y [m], 9 … 24
   double ceiling = 2.8;        ///< clear height [m], 2.4 … 4
-  double passage = 0.8;        ///< free width between things [m], 0.4 … 1.2
-  double clutter = 0.5;        ///< 0 bare … 1: small things on desks and floors
+  double passage = 0.8;        ///< free width between objects [m], 0.4 … 1.2
+  double clutter = 0.5;        ///< 0 bare … 1: small objects on desks and floors
   std::string doors = "open";  ///< at the start: open ajar closed
-  double loose = 0.1;          ///< fraction of what could be pushed that can be, 0 … 1
+  double loose = 0.1;          ///< fraction of movable objects that are loose, 0 … 1
   bool furnished = true;       ///< false: bare rooms
   bool openable = false;       ///< doors and drawers of furniture; each costs physics time
-  bool roof = true;            ///< false: no ceilings, to look in from above
+  bool roof = true;            ///< false: no ceilings, for views from above
   SourceLoc loc = {};
 };
 
-/// [environment.hallway]: a corridor of a public building, straight or with turns, its doors
-/// locked. The world's origin is at its western end.
+/// [environment.hallway]: a corridor of a public building, straight or with turns, with locked
+/// doors. The world's origin is at its western end.
 struct HallwayOptions {
-  uint64_t seed = 1;     ///< seed of the hallway
-  double length = 30;    ///< length of all its legs [m], 8 … 200; more if corners need it: docs
+  uint64_t seed = 1;  ///< seed of the hallway
+  double length =
+      30;  ///< total length of all legs [m], 8 … 200; longer if corners require it (docs)
   double width = 2.4;    ///< [m], 1.6 … 6
   double ceiling = 2.7;  ///< clear height [m], 2.3 … 5
   int turns = 1;         ///< right angles, 0 … 3
-  double passage = 0.9;  ///< free width between things [m], 0.4 … 1.2
-  double clutter = 0.5;  ///< 0 bare … 1: things standing about
-  double loose = 0.1;    ///< fraction of what could be pushed that can be, 0 … 1
-  bool roof = true;      ///< false: no ceilings, to look in from above
+  double passage = 0.9;  ///< free width between objects [m], 0.4 … 1.2
+  double clutter = 0.5;  ///< 0 bare … 1: objects standing around
+  double loose = 0.1;    ///< fraction of movable objects that are loose, 0 … 1
+  bool roof = true;      ///< false: no ceilings, for views from above
   SourceLoc loc = {};
 };
 
-/// [environment.bedroom]: one furnished bedroom and a piece of hall before its door, where the
-/// world's origin is.
+/// [environment.bedroom]: one furnished bedroom and a part of the hall in front of its door, which
+/// contains the world's origin.
 struct BedroomOptions {
   uint64_t seed = 1;           ///< seed of the bedroom
   double width = 4.2;          ///< along x [m], 3 … 8
   double depth = 3.8;          ///< along y [m], 3 … 8
   double ceiling = 2.5;        ///< clear height [m], 2.2 … 4
-  double passage = 0.7;        ///< free width between things [m], 0.4 … 1.2
-  double clutter = 0.5;        ///< 0 bare … 1: small things lying about
+  double passage = 0.7;        ///< free width between objects [m], 0.4 … 1.2
+  double clutter = 0.5;        ///< 0 bare … 1: scattered small objects
   std::string doors = "open";  ///< at the start: open ajar closed
-  double loose = 0.1;          ///< fraction of what could be pushed that can be, 0 … 1
+  double loose = 0.1;          ///< fraction of movable objects that are loose, 0 … 1
   bool openable = true;        ///< doors and drawers of furniture; each costs physics time
-  bool roof = true;            ///< false: no ceiling, to look in from above
+  bool roof = true;            ///< false: no ceiling, for views from above
   SourceLoc loc = {};
 };
 
-/// [environment.tunnel]: a road tunnel under an arch, along x and gently curved. The world's origin
-/// is on its road, a quarter of its length from the western portal.
+/// [environment.tunnel]: a road tunnel with an arched ceiling, along x and gently curved. The
+/// world's origin is on the road, a quarter of the length from the western portal.
 struct TunnelOptions {
   uint64_t seed = 1;     ///< seed of the tunnel
   double length = 80;    ///< [m], 20 … 400
   double width = 7;      ///< width of the road [m], 3 … 12
   double height = 5.2;   ///< height of the arch above the road [m], 2.6 … 9
-  double curve = 300;    ///< least radius of its bends [m], 60 … 5000
-  double lamps = 12;     ///< between lamps [m], 4 … 60
-  double failed = 0.1;   ///< fraction of lamps that are out, 0 … 1
-  double clutter = 0.5;  ///< 0 bare … 1: cones, barriers, goods left standing
-  double loose = 0.1;    ///< fraction of what could be pushed that can be, 0 … 1
+  double curve = 300;    ///< minimum radius of curvature [m], 60 … 5000
+  double lamps = 12;     ///< distance between lamps [m], 4 … 60
+  double failed = 0.1;   ///< fraction of lamps that do not work, 0 … 1
+  double clutter = 0.5;  ///< 0 bare … 1: cones, barriers, goods left behind
+  double loose = 0.1;    ///< fraction of movable objects that are loose, 0 … 1
   SourceLoc loc = {};
 };
 
-/// [environment.terrain]: open country under the sky, a rectangle about the world's origin, which
-/// is on level free ground at z = 0: on the road, which leads along x, where there is one.
+/// [environment.terrain]: open terrain under the sky, a rectangle around the world's origin. The
+/// origin is on level free ground at z = 0, on the road along x if there is one.
 struct TerrainOptions {
   uint64_t seed = 1;        ///< seed of the terrain
   double length = 60;       ///< along x [m], 20 … 200
   double width = 60;        ///< along y [m], 20 … 200
-  double relief = 4;        ///< about, of its highest point over its lowest [m], 0 … 20
-  double resolution = 0.2;  ///< between samples of the ground [m], 0.05 … 1
+  double relief = 4;        ///< approximate height of its highest point over its lowest [m], 0 … 20
+  double resolution = 0.2;  ///< distance between samples of the ground [m], 0.05 … 1
   double road = 3.5;        ///< width of the gravel track [m], 2 … 8; 0 = none
-  bool water = true;        ///< a pond, at one edge
-  double grass = 0.6;       ///< 0 mown … 1: how dense and high it stands
+  bool water = true;        ///< a pond at one edge
+  double grass = 0.6;       ///< density and height of grass, 0 mown … 1
   double rocks = 0.5;       ///< 0 none … 1
   double trees = 0.5;       ///< trees and bushes, 0 none … 1
-  int buildings = 1;        ///< weathered barns, 0 … 3, as far as there is room
-  double loose = 0.1;       ///< fraction of the smaller rocks that can be pushed, 0 … 1
+  int buildings = 1;        ///< weathered barns, 0 … 3, if there is room
+  double loose = 0.1;       ///< fraction of the smaller rocks that are loose, 0 … 1
   SourceLoc loc = {};
 };
 

@@ -17,62 +17,64 @@ struct SimOptions {
   std::optional<double> timestep = {};  ///< [s]; empty = the model's own
   double duration = 10;                 ///< [s] of simulation time, > 0
   uint64_t seed = 1;                    ///< seed of everything random
-  /// fast | realtime | sensors (docs/sensors.md), where the command names none; empty = realtime
+  /// fast | realtime | sensors (docs/sensors.md), unless the command names one; empty = realtime
   /// for live runs, fast for others.
   std::string pace = {};
   SourceLoc loc = {};
 };
 
-/// [render]: how pictures are made.
+/// [render]: rendering of images.
 struct RenderOptions {
   std::string tier = "path";    ///< path | fast | direct (docs/light.md)
-  std::optional<int> spp = {};  ///< samples per pixel, 1 … 65536; with `error` at most, from 16
+  std::optional<int> spp = {};  ///< samples per pixel, 1 … 65536; with `error` the maximum, from 16
   /// Error bound of the path tier: each pixel is sampled until its standard error is this fraction
-  /// of its value, 0.0001 … 1 (docs/light.md); empty = as many samples in every pixel.
+  /// of its value, 0.0001 … 1 (docs/light.md); empty = the same number of samples in every pixel.
   std::optional<double> error = {};
-  /// Path vertices after the camera, 1 … 64; empty = 5, where there are media 24: fog is white by
-  /// light that it scatters many times.
+  /// Path vertices after the camera, 1 … 64; empty = 5, or 24 with media, because fog is white due
+  /// to multiple scattering.
   std::optional<int> max_depth = {};
-  /// cpu | cuda | auto (an NVIDIA card where this build and this machine have one, else the CPU).
+  /// cpu | cuda | auto (an NVIDIA GPU if this build and this machine support one, otherwise the
+  /// CPU).
   std::string device = "auto";
-  bool denoise = true;  ///< but of the fast tier, which has a filter of its own
-  /// auto | studio | model: the light of models that bring none. studio: a soft sky, a key light
-  /// and a floor, in colour pictures alone; model: what MuJoCo shows; auto: the studio for models
-  /// without lamps and sky (docs/light.md).
+  bool denoise = true;  ///< except in the fast tier, which has its own filter
+  /// auto | studio | model: light for models without lights. studio: a soft sky, a key light and a
+  /// floor, only in colour images; model: the lights of MuJoCo; auto: studio for models without
+  /// lamps and sky (docs/light.md).
   std::string look = "auto";
-  /// Exposure value at ISO 100; empty = the scene's rule (docs/light.md).
+  /// Exposure value at ISO 100; empty = determined by the scene (docs/light.md).
   std::optional<double> ev100 = {};
-  /// Groups of geoms, skins, flexes, tendons and sites that are drawn, 0 … 5; empty = 0 to 2, and
-  /// collision shapes of what has nothing else to show
+  /// Rendered groups of geoms, skins, flexes, tendons and sites, 0 … 5; empty = 0 to 2, and the
+  /// collision shapes of bodies that have no other geoms
   std::vector<int> groups = {};
-  bool sites = false;  ///< sites are drawn: seen by cameras alone
+  bool sites = false;  ///< render sites; only cameras see them
   SourceLoc loc = {};
 
-  /// spp, or where it is empty 4, with `error` 4096.
+  /// spp; if it is empty, 4, or 4096 with `error`.
   int samples() const { return spp.value_or(error ? 4096 : 4); }
 };
 
-/// [record]: what is written of a run.
+/// [record]: recorded outputs of a run.
 struct RecordOptions {
   std::vector<std::string> outputs = {"video", "png",
-                                      "lidar"};  ///< those of kRecordOutputs (gloam/outputs.h)
-  bool mcap = false;  ///< writes the run as a log, run.mcap, too (docs/logs.md)
-  /// Topics of the log by name; * stands for any text. Empty = the usual ones (docs/topics.md).
+                                      "lidar"};  ///< from kRecordOutputs (gloam/outputs.h)
+  bool mcap = false;  ///< also write the run as a log, run.mcap (docs/logs.md)
+  /// Topics of the log by name; * matches any text. Empty = the default set (docs/topics.md).
   std::vector<std::string> topics = {};
   Rational state_rate = {100, 1};  ///< states in the log per second of simulation time [Hz]
-  /// Rows of metrics.csv per second of simulation time [Hz], which metrics are summed up over, too;
-  /// at most one a step.
+  /// Rows of metrics.csv per second of simulation time [Hz], also the sampling of reductions; at
+  /// most one per step.
   Rational metrics_rate = {100, 1};
-  bool embed = false;    ///< files that the scene reads are in the log, not their hashes alone
-  bool durable = false;  ///< each chunk of the log is synced to the disk before the next is written
+  bool embed = false;  ///< include the files that the scene reads in the log, not only their hashes
+  bool durable = false;  ///< sync each chunk of the log to the disk before the next is written
   SourceLoc loc = {};
 };
 
-/// [[randomize]]: an option that sim.seed draws (docs/environments.md). One of the distributions.
+/// [[randomize]]: an option drawn at random with sim.seed (docs/environments.md), from one of the
+/// distributions.
 struct RandomizeOptions {
-  /// Path as of set_option; * in a name stands for any text, and each that it fits has its own draw
+  /// Path as in set_option; * in a name matches any text, and each match has its own draw
   std::string option = {};
-  std::string operation = "set";           ///< set | add | scale: what is done to what is written
+  std::string operation = "set";           ///< set | add | scale: operation on the written value
   std::vector<TomlText> uniform = {};      ///< from, to
   std::vector<TomlText> log_uniform = {};  ///< from, to; > 0
   std::vector<TomlText> normal = {};       ///< mean, standard deviation; within the option's range

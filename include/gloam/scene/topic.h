@@ -9,15 +9,15 @@
 
 namespace gloam {
 
-/// [[topic]]: one topic, or several, otherwise than by the default rules (docs/topics.md). A later
-/// line wins.
+/// [[topic]]: changes one or several topics from the default rules (docs/topics.md). A later table
+/// takes precedence.
 struct TopicOptions {
-  std::string name = {};              ///< name by the rules, "/front/points"; * stands for any text
-  std::string rename = {};            ///< name instead; empty = as it is
-  std::string frame = {};             ///< frame_id instead; empty = as it is
+  std::string name = {};              ///< default name, "/front/points"; * matches any text
+  std::string rename = {};            ///< new name; empty = unchanged
+  std::string frame = {};             ///< new frame_id; empty = unchanged
   std::optional<Rational> rate = {};  ///< messages per second of simulation time [Hz]
-  std::optional<bool> log = {};       ///< written to logs that name no topics
-  std::optional<bool> off = {};       ///< neither said nor heard
+  std::optional<bool> log = {};       ///< recorded by logs that do not name topics
+  std::optional<bool> off = {};       ///< neither published nor accepted
   SourceLoc loc = {};
 };
 

@@ -12,7 +12,7 @@
 
 namespace gloam {
 
-/// [volume.pattern]: a density made by formula, 0 … 1, times the volume's.
+/// [volume.pattern]: a procedural density, 0 … 1, multiplied by the density of the volume.
 struct VolumePatternOptions {
   std::string kind = {};  ///< plume: rises from the middle of the floor; cloud: fills the box
   uint64_t seed = 0;      ///< another shape of the same kind
@@ -20,25 +20,27 @@ struct VolumePatternOptions {
   SourceLoc loc = {};
 };
 
-/// [[volume]]: a box that holds a medium. How much is `density` or `visibility`: even, or of a
-/// value of one of `grid` or `pattern`.
+/// [[volume]]: a box that contains a medium. Its amount is `density` or `visibility`, uniform or
+/// for the value one of `grid` or `pattern`.
 struct VolumeOptions {
   std::string name = {};                 ///< unique
   Vec3 position = {};                    ///< centre of the box in the world [m]
   std::optional<Quat> orientation = {};  ///< rotation of the box in the world
   Vec3 size = {};                        ///< edges of the box [m]
-  std::string medium = {};               ///< smoke fog mist haze dust; empty = own numbers
-  /// Own numbers: one for all bands, or one each for red, green, blue, 905 nm, 1550 nm, 8–14 µm.
+  std::string medium = {};               ///< smoke fog mist haze dust; empty = the numbers below
+  /// Optical numbers: one for all bands, or one each for red, green, blue, 905 nm, 1550 nm, 8–14
+  /// µm.
   std::vector<double> mass_extinction = {};  ///< [m²/kg]
-  std::vector<double> albedo = {};           ///< albedo of single scattering, 0 … 1
+  std::vector<double> albedo = {};           ///< single-scattering albedo, 0 … 1
   std::vector<double> g = {};                ///< mean cosine of scattering, -1 … 1
   std::optional<double> density = {};        ///< [kg/m³]
-  std::optional<double> visibility = {};     ///< [m]: contrast falls to 2 % there, green light
-  double temperature = 293;                  ///< [K]
-  /// Emission of thermal light, relative to a black body's (1: Kirchhoff's law).
+  std::optional<double> visibility =
+      {};                    ///< distance at which contrast falls to 2 %, in green light [m]
+  double temperature = 293;  ///< [K]
+  /// Thermal emission of light, relative to a black body (1: Kirchhoff's law).
   double emission = 0;
-  double fade = 0;                  ///< smooth fall to zero over this distance from the walls [m]
-  std::filesystem::path grid = {};  ///< density: .npy of float32, (nz, ny, nx)
+  double fade = 0;  ///< distance from the walls over which the density falls smoothly to zero [m]
+  std::filesystem::path grid = {};              ///< density: .npy of float32, (nz, ny, nx)
   std::filesystem::path temperature_grid = {};  ///< temperatures [K], of the same shape
   std::optional<VolumePatternOptions> pattern = {};
   SourceLoc loc = {};
