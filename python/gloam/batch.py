@@ -23,7 +23,7 @@ PathLike = str | os.PathLike[str]
 
 def run(source: Any, out: PathLike, *, settings: Mapping[str, Any] | None = None, outputs: Sequence[str] | None = None,
         overwrite: bool = False, progress: ProgressLike = None, **request: Any) -> RunReport:
-    """Runs a scene for its duration and records what it asks for into the folder `out`, as `gloam run` does.
+    """Runs a scene for its duration and records its outputs into the folder `out`, like `gloam run`.
 
     `request`: cameras, width, height, rate [Hz], duration [s], seed, timestep [s], mcap (a log's path), topics.
     """
@@ -40,7 +40,7 @@ def run(source: Any, out: PathLike, *, settings: Mapping[str, Any] | None = None
 
 def render(source: Any, time: float = 0.0, camera: str = "free", *, outputs: Sequence[str] = ("rgb",), settings: Mapping[str, Any] | None = None,
            width: int = 0, height: int = 0, pose: Pose | None = None, progress: ProgressLike = None, **options: Any) -> Frame:
-    """A still of one camera at a time [s], as `gloam render` makes it. `options`: tier, spp, denoise, device …"""
+    """A still of one camera at a time [s], like `gloam render`. `options`: tier, spp, denoise, device …"""
     world = _compiled(source, settings, None, progress)
     request = {"camera": camera, "outputs": list(outputs), "width": width, "height": height, "pose": pose, **options}
     with watch(progress, "rendering") as told:
@@ -64,13 +64,15 @@ def generate(kind: str, folder: PathLike = ".", **parameters: Any) -> Scene:
 
 
 def convert(mesh: PathLike, progress: ProgressLike = None, root: PathLike = "", strict: bool = False) -> dict[str, Any]:
-    """Colliders, volume, mass of a mesh as an [[object]] gets them, and how near they are to it. `root`, `strict`: as of Scene."""
+    """Colliders, volume and mass of a mesh as an [[object]], and the accuracy of the colliders. `root`, `strict`: as
+    for Scene."""
     with watch(progress, f"converting {Path(mesh).name}") as told:
         return dict(_core.convert_object(Path(mesh), told, os.fspath(root), strict))
 
 
 def check(model: PathLike, root: PathLike = "", strict: bool = False) -> dict[str, Any]:
-    """Compares a model or scene with what stock MuJoCo makes of it, and its export with itself: "passed", and the fields that differ."""
+    """Compares a model or scene with the result of stock MuJoCo, and its export with itself: "passed", and the fields
+    that differ."""
     with tempfile.TemporaryDirectory() as folder:
         return dict(_core.check_model(Path(model), Path(folder), os.fspath(root), strict))
 
@@ -101,10 +103,11 @@ def evaluate(estimate: Any, reference: Any, *, align: str = "se3", rpe_delta: fl
              rpe_tolerance: float = 0.1, max_difference: float = 0.01, offset: float = 0.0) -> dict[str, Any]:
     """ATE and RPE of an estimated trajectory against a reference, with the names, defaults and results of `gloam evaluate --json`.
 
-    Each side is a file (TUM, KITTI, EuRoC), a topic of a log ("run.mcap:/odom", or (log, "/odom")), or (times (n,) [s], poses (n, 7): x, y, z,
-    qw, qx, qy, qz). `align`: se3, sim3, scale, origin or none. `rpe_delta` (None = 1) in `rpe_unit`: m along the way, f frames, s, deg or rad.
-    Returns "ate" and "rpe", each with "translation_m", "angle_rad" and "full": rmse, mean, median, std, min, max, sse, count and "values";
-    "align", "pairs", lengths. "rpe" is None where the trajectory is shorter than the delta of 1 that nobody asked for.
+    Each side is a file (TUM, KITTI, EuRoC), a topic of a log ("run.mcap:/odom", or (log, "/odom")), or (times (n,)
+    [s], poses (n, 7): x, y, z, qw, qx, qy, qz). `align`: se3, sim3, scale, origin or none. `rpe_delta` (None = 1) in
+    `rpe_unit`: m along the path, f frames, s, deg or rad. Returns "ate" and "rpe", each with "translation_m",
+    "angle_rad" and "full": rmse, mean, median, std, min, max, sse, count and "values"; "align", "pairs", lengths.
+    "rpe" is None if the trajectory is shorter than the default delta of 1.
     """
     options = {"align": align, "rpe_delta": rpe_delta, "rpe_unit": rpe_unit, "all_pairs": all_pairs, "rpe_tolerance": rpe_tolerance,
                "max_difference": max_difference, "offset": offset}
@@ -112,6 +115,6 @@ def evaluate(estimate: Any, reference: Any, *, align: str = "se3", rpe_delta: fl
 
 
 def report(runs: Sequence[PathLike], out: PathLike, *, title: str = "", overwrite: bool = False) -> list[str]:
-    """One HTML page of results folders side by side. Returns what could not be read of them."""
+    """Writes one HTML page that compares results folders. Returns the errors of files that could not be read."""
     _, _, left_out = _core.write_report([Path(r) for r in runs], Path(out), overwrite, title)
     return list(left_out)

@@ -20,10 +20,12 @@ M = TypeVar("M")
 
 
 class Frame:
-    """One frame of one camera. Arrays are views of its memory and keep it alive; channels that were not asked for are None.
+    """One frame of one camera. Arrays are views of its memory and keep it alive; channels that were not requested are
+    None.
 
-    rgb (H, W, 3) uint8 sRGB; radiance (H, W, 3) [cd/m²]; depth, distance (H, W) [m], inf = nothing; ids, semantic, part (H, W) uint32, 0 = nothing;
-    normal, albedo, scene_flow (H, W, 3); motion (H, W, 2) [px]; thermal (H, W) [K]; raw, sensor_depth, samples as docs/cameras.md says.
+    rgb (H, W, 3) uint8 sRGB; radiance (H, W, 3) [cd/m²]; depth, distance (H, W) [m], inf = nothing; ids, semantic,
+    part (H, W) uint32, 0 = nothing; normal, albedo, scene_flow (H, W, 3); motion (H, W, 2) [px]; thermal (H, W) [K];
+    raw, sensor_depth, samples: see docs/cameras.md.
     """
 
     def __init__(self, frame: Any) -> None:
@@ -44,7 +46,7 @@ class Frame:
 
     @property
     def ids(self) -> NDArray[np.uint32]:
-        """Object ids, as of sim.labels() "instance"."""
+        """Object ids, as "instance" in sim.labels()."""
         return cast("NDArray[np.uint32]", self._frame.instance)
 
     @property
@@ -54,7 +56,7 @@ class Frame:
 
     @property
     def D(self) -> list[float]:
-        """Distortion as ROS's CameraInfo has it."""
+        """Distortion as in ROS's CameraInfo."""
         return list(self._frame.info["d"])
 
     @property
@@ -132,7 +134,7 @@ class Scan:
 
 
 class Source:
-    """Something that is opened as a stream: a camera, a LiDAR, a sensor."""
+    """A source that is opened as a stream: a camera, a LiDAR, a sensor."""
 
     def __init__(self, sim: Simulation, name: str) -> None:
         self._sim = sim
@@ -168,7 +170,7 @@ class Source:
 
     @property
     def dropped(self) -> int:
-        """Messages lost because nobody took them in time."""
+        """Messages lost because they were not read in time."""
         return int(self._opened().dropped)
 
     def _next(self) -> Any:
@@ -176,7 +178,7 @@ class Source:
         return self._last
 
     def _waiting(self) -> Iterator[Any]:
-        """Messages that have come since, without stepping."""
+        """Messages received since the last call, without stepping."""
         stream = self._opened()
         stream.flush()
         while (message := stream.pop()) is not None:
@@ -199,8 +201,9 @@ class Camera(Source):
 
     def open(self, outputs: Sequence[str] = _DEFAULT_OUTPUTS, *, width: int = 0, height: int = 0, rate: float = 0, required: bool = True,
              pose: Pose | None = None, callback: Callable[[Frame], None] | None = None, **render: Any) -> Camera:
-        """Opens it anew. `width`, `height` [px] and `rate` [Hz]: 0 = the camera's own; `required`: the simulation waits for it; `callback`: called
-        on the camera's thread for each frame, which is then not kept for next(); `render`: tier, spp, denoise, device …"""
+        """Opens the stream, or reopens it. `width`, `height` [px] and `rate` [Hz]: 0 = the camera's own; `required`:
+        the simulation waits for it; `callback`: called on the camera's thread for each frame, which is then not kept
+        for next(); `render`: tier, spp, denoise, device …"""
         if isinstance(outputs, str):
             outputs = (outputs,)
         self._start({"outputs": list(outputs), "width": width, "height": height, "rate": rate, "required": required, "pose": pose,
@@ -212,12 +215,12 @@ class Camera(Source):
         return cast("Frame", self._next())
 
     def waiting(self) -> Iterator[Frame]:
-        """Frames that have come and were not taken."""
+        """Frames that were received but not yet read."""
         return self._waiting()
 
     @property
     def frame(self) -> Frame | None:
-        """The last one that was taken."""
+        """The last frame that was read."""
         return cast("Frame | None", self._last)
 
     def set_pose(self, pose: Pose | tuple[Any, Any]) -> None:
@@ -226,7 +229,8 @@ class Camera(Source):
 
     def render(self, outputs: Sequence[str] = _DEFAULT_OUTPUTS, *, width: int = 0, height: int = 0, pose: Pose | None = None,
                qpos: ArrayLike | None = None, **render: Any) -> Frame:
-        """A picture of the present instant, sharp, without a stream; with `qpos`, (nq,), of the scene as it stands in that state."""
+        """Renders an image of the present instant, without motion blur and without a stream; with `qpos`, (nq,), of
+        the scene in that state."""
         options = {"camera": self.name, "outputs": list(outputs), "width": width, "height": height, "pose": pose, **render}
         core = self._sim._core if qpos is None else self._sim._posed(qpos)
         return Frame(self._sim._painter().paint(core, options))
@@ -246,7 +250,7 @@ class Lidar(Source):
         return self
 
     def next(self) -> Scan:
-        """Steps until its next scan is whole, and returns that."""
+        """Steps until its next scan is complete, and returns it."""
         return cast("Scan", self._next())
 
     def waiting(self) -> Iterator[Scan]:
@@ -254,7 +258,8 @@ class Lidar(Source):
 
 
 class Sensor(Source):
-    """A sensor of MuJoCo's model or a [[probe]] of the scene, with the errors that its [[sensor]] in the scene gives it."""
+    """A sensor of MuJoCo's model or a [[probe]] of the scene, with the errors of its [[sensor]] table in the
+    scene."""
 
     def _open(self, options: dict[str, Any], callback: Callable[[Any], None] | None) -> Any:
         return _core.open_sensor(self._sim._core, self.name, options.get("required", True), callback)
@@ -265,7 +270,8 @@ class Sensor(Source):
 
     @property
     def values(self) -> Doubles:
-        """The truth of the last step, live, as MuJoCo has it; of a probe its last sample since it was opened. For reading."""
+        """True values of the last step, as a live view of MuJoCo's data; for a probe, its last sample since it was
+        opened. Read-only."""
         sim = self._sim
         if self.name in sim.world.probes:
             for _ in self._waiting():
@@ -286,7 +292,8 @@ class Sensor(Source):
 
 
 class Subscription:
-    """Open topics: iterating gives the messages that have come. Message: .topic .type .stamp .data (CDR), .decode() -> dict."""
+    """Open topics: iteration yields the received messages. Message: .topic .type .stamp .data (CDR), .decode() ->
+    dict."""
 
     def __init__(self, stream: Any) -> None:
         self._stream = stream

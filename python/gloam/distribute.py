@@ -3,8 +3,8 @@
     gloam.distribute.rollouts("house.toml", policy, 100, out="rollouts", robot="go2", command=(0.5, 0, 0), duration=5)
     gloam.distribute.variants("run.mcap", "skies.toml", 1000, out="skies")
 
-One task is one folder OUT/0000, OUT/0001 …, made by a seed of its own. The same call goes on where it was stopped,
-however it was: each task is done exactly once. What a task makes does not depend on the number of workers.
+One task is one folder OUT/0000, OUT/0001 …, made by a seed of its own. Repeating the call resumes it after any
+interruption: each task is done exactly once. Results do not depend on the number of workers.
 """
 
 from __future__ import annotations
@@ -37,8 +37,8 @@ TOPICS = (
 
 @dataclass(frozen=True)
 class Task:
-    """A task of a folder. `error`: why it is not there, "" if it is. `values`: its task.json, as steps, time [s],
-    hash, result."""
+    """A task of a folder. `error`: reason why it is missing, "" if it is present. `values`: its task.json, as steps,
+    time [s], hash, result."""
 
     index: int
     seed: int
@@ -81,7 +81,7 @@ def _seeds(count: int, seeds: int | Sequence[int] | None) -> list[int]:
 
 
 def _content(path: Path) -> str:
-    """Hash of a file, which tells in a list what it was made of. Raises UsageError: no such file."""
+    """Hash of a file, which identifies the source in a list. Raises UsageError: no such file."""
     try:
         with path.open("rb") as stream:
             return hashlib.file_digest(stream, "sha256").hexdigest()
@@ -90,7 +90,7 @@ def _content(path: Path) -> str:
 
 
 def _scene_source(scene: Any) -> tuple[SceneSource, dict[str, str]]:
-    """What is sent of a scene, and what a list tells of it."""
+    """Data of a scene to send to workers, and its entry in a list."""
     from .scene import Scene
 
     if isinstance(scene, Mapping):
@@ -108,7 +108,7 @@ def _scene_source(scene: Any) -> tuple[SceneSource, dict[str, str]]:
 
 
 def _drive_print(drive: Any) -> dict[str, str]:
-    """What a list tells of a policy or function, so that another one is not taken for it."""
+    """Entry of a policy or function in a list, which distinguishes it from others."""
     from .policy import Policy
 
     if isinstance(drive, Policy):
@@ -177,7 +177,7 @@ def rollouts(
 ) -> Report:
     """Simulates a scene `count` times, by one seed each, and writes OUT/0000 … with run.mcap and task.json.
 
-    scene: path, Scene or dict; all workers see its files. drive: a Policy, which drives `robot` ("" = the first) at
+    scene: path, Scene or dict; all workers see its files. drive: a Policy, which controls `robot` ("" = the first) at
     `command` (vx, vy [m/s], yaw rate [rad/s]) for `duration` [s]; or a function (sim, seed, folder) that steps the
     simulation, may write files into the folder, and returns a dict for task.json or None. seeds: None = 1, 2 …; a
     number = the first; or a list. settings: options of the scene. topics: of the log; None = no log. cpus: of one
@@ -228,11 +228,11 @@ def variants(
     progress: ProgressLike = None,
     **options: Any,
 ) -> Report:
-    """Records a log again `count` times under what the [[randomize]]s of a file draw: OUT/0000 … with seeds from
-    `first_seed` on.
+    """Records a log again `count` times with values drawn by the [[randomize]] tables of a file: OUT/0000 … with
+    seeds starting at `first_seed`.
 
-    Each folder is what `gloam replay --variants` makes. options: as of Log.variants: settings, motion, outputs,
-    cameras, width, height, rate [Hz], duration [s]. The rest as of rollouts().
+    Each folder has the content of `gloam replay --variants`. options: as for Log.variants: settings, motion, outputs,
+    cameras, width, height, rate [Hz], duration [s]. Other arguments as for rollouts().
     """
     file, drawn = Path(log).absolute(), Path(randomize).absolute()
     request = {

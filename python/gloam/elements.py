@@ -22,7 +22,7 @@ T = TypeVar("T")
 
 
 class Named(Mapping[str, T], Generic[T]):
-    """Elements by name; they are made when they are asked for."""
+    """Elements by name; created on first access."""
 
     def __init__(self, what: str, names: Callable[[], Sequence[str]], make: Callable[[str], T], owner: str = "") -> None:
         self._what = what
@@ -42,7 +42,7 @@ class Named(Mapping[str, T], Generic[T]):
         return self._made[name]
 
     def forget_world(self) -> None:
-        """Lets go of arrays and handles of the World before."""
+        """Releases arrays and handles of the previous World."""
         for element in self._made.values():
             if isinstance(element, Element):
                 element.forget_world()
@@ -93,7 +93,8 @@ def yaw_quaternion(yaw: float) -> Doubles:
 
 
 class Element:
-    """Something of the model with a name. After a recompile it is that of the same name, or raises NotFoundError."""
+    """A named element of the model. After a recompile it refers to the element of the same name, or raises
+    NotFoundError."""
 
     _of_world: tuple[str, ...] = ()  # attributes that _changed() makes
 
@@ -122,7 +123,7 @@ class Element:
         """Looks up what depends on the World."""
 
     def forget_world(self) -> None:
-        """Lets go of arrays and handles; they are looked up again when they are needed."""
+        """Releases arrays and handles; they are looked up again when needed."""
         self._generation = -1
         self._handle = None
         for name in self._of_world:
@@ -170,11 +171,11 @@ class Joint(Element):
         return float(self.qvel[0])
 
     def set(self, qpos: ArrayLike | None = None, qvel: ArrayLike | None = None) -> None:
-        """Puts it somewhere else at the next step, as a Command."""
+        """Sets its position or velocity at the next step, with a Command."""
         self._sim._core.set_joint_state(self._now(), qpos, qvel)
 
     def set_goal(self, position: float) -> None:
-        """Position [rad, m] that the robot's controller brings it to ("joint_position" obeys)."""
+        """Goal position [rad, m] for the robot's controller (used by "joint_position")."""
         self._sim._core.set_joint_goal(self._now(), float(position), lease=self._sim._lease_of_joint(self.name))
 
 
@@ -242,10 +243,10 @@ class Actuator(Element):
 
 
 class Robot(Element):
-    """A robot: its root, joints and actuators, and what drives it.
+    """A robot: its root, joints and actuators, and its control.
 
-    `qpos`, `qvel` and `controls` are live where their elements lie side by side in MuJoCo's arrays, as they do in most models: what is written into
-    them while the simulation is paused is an input of the next step. Otherwise they are copies that cannot be written.
+    `qpos`, `qvel` and `controls` are live if their elements are contiguous in MuJoCo's arrays, as in most models:
+    values written while the simulation is paused are inputs of the next step. Otherwise they are read-only copies.
     """
 
     _of_world = ("_qpos", "_qvel", "_ctrl", "_info")
@@ -330,8 +331,8 @@ class Robot(Element):
 
     @property
     def controls(self) -> Doubles:
-        """Controls of its actuators, each in its own unit, (n,). Assigned, they apply from the next step on, before its controller; written into the
-        array, after it."""
+        """Controls of its actuators, each in its own unit, (n,). Assigned controls apply from the next step, before
+        its controller; values written into the array apply after it."""
         self._now()
         return self._ctrl.array()
 
@@ -345,7 +346,8 @@ class Robot(Element):
 
     def scale_dynamics(self, *, mass: ArrayLike | None = None, friction: ArrayLike | None = None, gains: ArrayLike | None = None,
                        armature: ArrayLike | None = None, damping: ArrayLike | None = None) -> None:
-        """As Simulation.scale_dynamics(), for the robot's own bodies, geoms, actuators and joints, in the model's order."""
+        """Like Simulation.scale_dynamics(), for the robot's own bodies, geoms, actuators and joints, in the model's
+        order."""
         self._now()
         actuators = [actuator.id for actuator in self._info["actuators"]]
         Dynamics(self._sim, self._info["root"].id, actuators).scale(mass=mass, friction=friction, gains=gains, armature=armature, damping=damping)
@@ -357,7 +359,7 @@ class Robot(Element):
             joint.set_goal(position)
 
     def set_joints(self, qpos: ArrayLike | None = None, qvel: ArrayLike | None = None) -> None:
-        """Puts its hinge and slide joints somewhere else at the next step, (n,) each."""
+        """Sets its hinge and slide joints at the next step, (n,) each."""
         self._now()
         n = len(self._single_names)
         positions = None if qpos is None else _sized(qpos, n, "qpos")
@@ -380,7 +382,7 @@ class Robot(Element):
 
     @contextmanager
     def claim(self) -> Iterator[Robot]:
-        """While it lasts, its controls and goals obey this simulation object's caller alone."""
+        """Gives this simulation object exclusive control of the robot while the context lasts."""
         lease = self._sim._core.claim(self._now())
         self._sim._leases[self.name] = lease
         try:
@@ -390,7 +392,7 @@ class Robot(Element):
 
 
 class _Picked:
-    """Elements of a live array: a view where they lie side by side, else a copy for reading."""
+    """Elements of a live array: a view if they are contiguous, else a read-only copy."""
 
     def __init__(self, memory: Any, name: str, places: list[int]) -> None:
         self._array: Doubles = memory.array(name)
@@ -411,7 +413,7 @@ def _sized(values: ArrayLike, n: int, what: str) -> Doubles:
 
 
 def read_only(values: ArrayLike) -> Doubles:
-    """An array of which a change would reach nobody."""
+    """A read-only array, because changes of it would have no effect."""
     array = np.asarray(values, dtype=np.float64)
     array.flags.writeable = False
     return array

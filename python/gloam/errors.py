@@ -1,4 +1,4 @@
-"""Exceptions of Gloam: what is wrong, where in which file, and what to do about it."""
+"""Exceptions of Gloam: the problem, its location in a file, and a remedy."""
 from __future__ import annotations
 
 
@@ -25,11 +25,11 @@ class Error(Exception):
 
 
 class InputError(Error, ValueError):
-    """A file or value that the user gave is wrong."""
+    """A file or value from the user is wrong."""
 
 
 class NotFoundError(InputError, KeyError):
-    """There is nothing of that name; the hint tells the nearest one."""
+    """Nothing of that name exists; the hint suggests the nearest name."""
 
     __str__ = Error.__str__
 
@@ -45,19 +45,19 @@ class UsageError(Error, ValueError):
 
 
 class PartialError(Error):
-    """It stopped early; what was recorded is whole and readable."""
+    """The run stopped early; the recording so far is complete and readable."""
 
 
 class DivergedError(Error, ArithmeticError):
-    """Physics left the finite numbers; the last good state is kept, reset() goes on."""
+    """Physics produced a value that is not finite; the last valid state is kept, reset() continues."""
 
 
 class UnsupportedError(Error, NotImplementedError):
-    """Valid input that this build cannot do."""
+    """Valid input that this build does not support."""
 
 
 class StoppedError(Error):
-    """It was stopped by request."""
+    """Stopped by request."""
 
 
 class ClosedError(Error, RuntimeError):
@@ -65,7 +65,7 @@ class ClosedError(Error, RuntimeError):
 
 
 class StuckError(Error, RuntimeError):
-    """A callback or hook has not returned: what was closed is closed, but its thread is left behind."""
+    """A callback or hook has not returned: the object is closed, but its thread is abandoned."""
 
 
 class ForkedError(Error, RuntimeError):

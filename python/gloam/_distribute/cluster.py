@@ -31,8 +31,8 @@ def _ray() -> Any:
 
 @contextmanager
 def _loopback_only() -> Iterator[None]:
-    """Ray's processes that are started in the block listen on loopback: it does so where it thinks of no other
-    machines."""
+    """Makes Ray's processes that are started in the block listen on loopback, which Ray does when it assumes that
+    there are no other machines."""
     constants: Any = importlib.import_module("ray._private.ray_constants")
     before = os.environ.get(_ONE_MACHINE), getattr(constants, "ENABLE_RAY_CLUSTER", None)
     os.environ[_ONE_MACHINE] = "0"  # for the processes that it starts
@@ -49,8 +49,8 @@ def _loopback_only() -> Iterator[None]:
 
 @contextmanager
 def cluster(address: str | None, workers: int | None) -> Iterator[Any]:
-    """Ray, connected: as it is if it is already, else to `address`, else to a new one with `workers` CPUs that ends
-    with the block.
+    """Connects Ray: keeps an existing connection, else connects to `address`, else starts a new cluster with
+    `workers` CPUs that ends with the block.
 
     The new one listens on loopback only, has no dashboard and reports nothing.
     """
@@ -88,7 +88,8 @@ def _set_threads(count: int) -> None:
 
 
 class _Progress:
-    """Tells how far the tasks are and how long they may still take, by the mean of those done in this call."""
+    """Reports the progress of the tasks and the estimated remaining time, from the mean of the tasks done in this
+    call."""
 
     def __init__(self, tell: Tell, total: int, done: int) -> None:
         self._tell, self._total, self._before = tell, total, done
@@ -106,10 +107,10 @@ class _Progress:
 
 
 def run_tasks(ray: Any, manifest: Manifest, job: Job, cpus: int, retries: int, tell: Tell) -> None:
-    """Does all tasks of the list that are not finished. What fails is in manifest.errors; the others go on.
+    """Runs all unfinished tasks of the list. Failures are collected in manifest.errors; the other tasks continue.
 
-    A worker that dies (killed, out of memory) has its task done again, up to `retries` times. Few tasks wait at the
-    cluster at once, so that a call that is stopped leaves little behind.
+    The task of a worker that dies (killed, out of memory) is repeated up to `retries` times. Few tasks are queued in
+    the cluster at once, so that a cancelled call leaves little behind.
     """
     missing = manifest.missing()
     progress = _Progress(tell, len(manifest.seeds), len(manifest.seeds) - len(missing))

@@ -1,4 +1,4 @@
-"""Jobs that workers do: one task is one call with a seed and a folder. They are sent to workers as they are."""
+"""Jobs for workers: one task is one call with a seed and a folder. Jobs are pickled and sent to workers."""
 
 from __future__ import annotations
 
@@ -15,14 +15,15 @@ from .manifest import PART, TASK_FILE, publish, read_task, write_json
 
 
 class Job(Protocol):
-    """Fills a new folder by a seed and returns what is to stand in its task.json. The same seed makes the same."""
+    """Fills a new folder by a seed and returns the content of its task.json. The same seed gives the same results."""
 
     def __call__(self, folder: Path, seed: int) -> dict[str, Any]: ...
 
 
 @dataclass(frozen=True)
 class VariantJob:
-    """One replay of a log under what [[randomize]]s of a file draw, as `gloam replay --variants` makes it."""
+    """One replay of a log with values drawn by the [[randomize]] tables of a file, as in `gloam replay
+    --variants`."""
 
     log: str
     randomize: str
@@ -110,7 +111,7 @@ def _plain(result: Mapping[str, Any]) -> dict[str, Any]:
 
 @dataclass(frozen=True)
 class Failure:
-    """What a task raised, in a form that always travels."""
+    """Exception of a task, in a form that can always be pickled."""
 
     error: str
 

@@ -1,8 +1,8 @@
-"""The list of a folder of tasks: what was asked for, and which of it is there.
+"""The list of a folder of tasks: the request and the finished tasks.
 
-A finished task is a folder OUT/0007 with task.json, which came there whole, by one rename; that is the truth.
-OUT/manifest.json tells the same for readers and is written anew whenever it changes. While a call works on a folder
-it holds OUT/.lock.
+A finished task is a folder OUT/0007 with task.json, which was moved there by one atomic rename; this is the
+authoritative state. OUT/manifest.json has the same information for readers and is rewritten at every change. A call
+holds OUT/.lock while it works on a folder.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ PART = ".part-"  # begins the names of folders that are being written
 
 
 def write_json(path: Path, value: Any) -> None:
-    """Writes a file whole or not at all, also when the process is killed."""
+    """Writes a file atomically, even if the process is killed."""
     part = path.with_name(f".{path.name}.{os.getpid()}")
     try:
         with part.open("w", encoding="utf-8") as stream:
@@ -38,7 +38,7 @@ def write_json(path: Path, value: Any) -> None:
 
 
 def read_task(folder: Path) -> dict[str, Any] | None:
-    """What a finished task left; None where it is not finished."""
+    """Result of a finished task; None if it is not finished."""
     try:
         made: dict[str, Any] = json.loads((folder / TASK_FILE).read_text(encoding="utf-8"))
     except (FileNotFoundError, NotADirectoryError):
@@ -51,7 +51,7 @@ def read_task(folder: Path) -> dict[str, Any] | None:
 
 
 def publish(part: Path, target: Path) -> bool:
-    """Moves a finished folder to its place. False: another worker was faster; then `part` is left where it is."""
+    """Moves a finished folder to its place. False: another worker was faster; `part` is then not moved."""
     try:
         os.rename(part, target)
     except OSError as error:
@@ -62,8 +62,8 @@ def publish(part: Path, target: Path) -> bool:
 
 
 class Manifest:
-    """Tasks of one folder, by their seeds. Raises UsageError: it holds tasks of another request, or another call
-    works on it now."""
+    """Tasks of one folder, by their seeds. Raises UsageError: the folder contains tasks of another request, or
+    another call is working on it."""
 
     def __init__(self, out: Path, kind: str, request: Mapping[str, Any], seeds: Sequence[int], overwrite: bool) -> None:
         self.out = out
@@ -120,7 +120,7 @@ class Manifest:
         return made
 
     def remove_parts(self) -> None:
-        """Removes what workers that died have left. Nobody works on the folder when this is called."""
+        """Removes unfinished files of workers that died. Must not be called while tasks run in the folder."""
         for part in self.out.glob(f"{PART}*"):
             shutil.rmtree(part, ignore_errors=True)
 

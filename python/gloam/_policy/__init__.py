@@ -1,1 +1,1 @@
-"""Parts of gloam.policy: what a network was trained with, its observation, its robot."""
+"""Parts of gloam.policy: specification, observation and robot of a network."""

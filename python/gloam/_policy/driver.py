@@ -1,4 +1,4 @@
-"""The loop in which a policy drives a robot: observation, network, targets, torques, between the steps of a
+"""The loop in which a policy controls a robot: observation, network, targets, torques, between the steps of a
 simulation."""
 
 from __future__ import annotations
@@ -41,11 +41,11 @@ def _steps_per_action(rate: float, timestep: float) -> int:
 
 
 class PolicyDriver:
-    """A policy at work on one robot. It acts before each step of the simulation, whatever steps it, until detach().
+    """A policy that controls one robot. It acts before each step of the simulation until detach().
 
-    At the policy's rate it observes and runs the network. Position servos of the policy's own gains get the targets
-    as controls; for all other motors and servos the torques kp (target - q) - kd v are computed at every step. What
-    the robot's own controller writes is replaced. When time goes back (reset, restore) it begins anew.
+    At the policy's rate it observes and runs the network. Position servos with the policy's gains receive the targets
+    as controls; for all other motors and servos the torques kp (target - q) - kd v are computed at every step. They
+    replace the output of the robot's own controller. When time goes back (reset, restore) the policy restarts.
     """
 
     def __init__(self, policy: Policy, sim: Any, robot: str) -> None:
@@ -73,7 +73,7 @@ class PolicyDriver:
         self.targets: Array = self.policy.spec.default_positions.copy()  # (n,) [rad], order of policy.spec.joints
 
     def reset(self) -> None:
-        """Forgets history, last action and gait phase; the next step acts. The command stays."""
+        """Clears history, last action and gait phase; the policy acts at the next step. The command stays."""
         self._begin(math.nan)
 
     @property
@@ -82,9 +82,9 @@ class PolicyDriver:
         return self._io.is_servo
 
     def command(self, vx: float = 0.0, vy: float = 0.0, yaw_rate: float = 0.0) -> tuple[float, float, float]:
-        """Velocity that the policy is to bring the robot to, heading frame [m/s, m/s, rad/s]; stays until changed.
+        """Sets the commanded velocity, heading frame [m/s, m/s, rad/s]; stays until changed.
 
-        Returns it as the policy sees it: within its command ranges. Raises UsageError: a number is not finite.
+        Returns the command clipped to the policy's command ranges. Raises UsageError: a number is not finite.
         """
         values = []
         for axis, value in zip(AXES, (vx, vy, yaw_rate), strict=True):
@@ -108,7 +108,7 @@ class PolicyDriver:
         self.reset()
 
     def detach(self) -> None:
-        """The policy lets go of the robot; its last controls stay."""
+        """Releases the robot; its last controls stay."""
         sim = self._sim()
         drivers = _drivers.get(sim, []) if sim is not None else []
         if self in drivers:

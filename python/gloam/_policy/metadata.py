@@ -27,7 +27,7 @@ def _numbers(text: str, key: str, file: str, separator: str = ",") -> list[float
 
 
 def _entries(metadata: Mapping[str, str], key: str, count: int, file: str) -> list[list[float]] | None:
-    """Numbers of each observation term; None where the file does not tell."""
+    """Numbers of each observation term; None if the file does not contain them."""
     if key not in metadata:
         return None
     entries = [_numbers(part, key, file, ";") for part in _split(metadata[key])]
@@ -103,8 +103,8 @@ def _holosoma(metadata: Mapping[str, str], file: str) -> dict[str, Any]:
 
 
 def settings_of(metadata: Mapping[str, str], file: str) -> dict[str, Any]:
-    """{"policy": {...}, "observation": [...]} of what the file tells, empty where it tells nothing that is known.
-    Raises InputError."""
+    """{"policy": {...}, "observation": [...]} from the metadata of the file, empty without known metadata. Raises
+    InputError."""
     if "joint_names" in metadata:
         return _mjlab(metadata, file)
     if "dof_names" in metadata:
@@ -113,8 +113,7 @@ def settings_of(metadata: Mapping[str, str], file: str) -> dict[str, Any]:
 
 
 def merge(base: Mapping[str, Any], over: Mapping[str, Any], file: str) -> dict[str, Any]:
-    """Settings of the metadata with those of a TOML laid over: keys of [policy] one by one, [[observation]] as a
-    whole."""
+    """Settings of the metadata, overridden by a TOML: keys of [policy] one by one, [[observation]] as a whole."""
     for key in over:
         if key not in ("policy", "observation"):
             raise InputError(f"there is no [{key}] in a policy's TOML", file, hint="[policy] and [[observation]]")

@@ -1,9 +1,9 @@
-"""Sizes that an ONNX file declares, read without making a single tensor: files come from strangers, and a file of a
-hundred bytes can ask for terabytes.
+"""Sizes declared by an ONNX file, read without creating any tensor: files may be untrusted, and a file of a hundred
+bytes can request terabytes.
 
-Only the parts of the format (onnx.proto3) that say how large a tensor is are read, on the wire format of Protocol
-Buffers. What the file says is checked before OpenVINO sees it; sizes that follow from its operations are checked by
-check_operations() on OpenVINO's graph, before it computes any.
+Only the parts of the format (onnx.proto3) that declare sizes of tensors are read, from the wire format of Protocol
+Buffers. Declared sizes are checked before OpenVINO sees the file; check_operations() checks the sizes that follow
+from its operations on OpenVINO's graph, before any is computed.
 """
 
 from __future__ import annotations

@@ -51,7 +51,7 @@ def _model_names(spec: PolicySpec, robot: str) -> list[str]:
 
 
 class RobotIo:
-    """Reads and drives one robot by the arrays of a simulation's memory, which it keeps.
+    """Reads and controls one robot through the arrays of a simulation's memory, which it keeps.
 
     Raises NotFoundError: a joint, a sensor or a joint's actuator is missing; UnsupportedError: joints that are no
     hinges or slides, no floating base where a term needs it, actuators whose torque does not follow from their

@@ -1,4 +1,4 @@
-"""What a policy was trained with: joints, gains, scales, observation terms. Checked, in the order of the policy's
+"""Specification of a policy: joints, gains, scales, observation terms. Checked, in the order of the policy's
 joints."""
 
 from __future__ import annotations
@@ -99,8 +99,8 @@ def _range(value: Any, what: str, file: str) -> tuple[float, float]:
 def per_joint(value: Any, joints: Sequence[str], what: str, file: str, default: float | None = None) -> Array:
     """(n,) of one number, of a list, or of a table {pattern = number} (regular expressions for whole names).
 
-    An exact name beats a pattern, of two patterns the later counts. Raises InputError: another length, a pattern that
-    fits no joint, a joint without a number where there is no default.
+    An exact name takes precedence over a pattern, a later pattern over an earlier one. Raises InputError: another
+    length, a pattern that matches no joint, a joint without a number if there is no default.
     """
     n = len(joints)
     if isinstance(value, Mapping):

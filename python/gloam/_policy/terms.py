@@ -1,7 +1,7 @@
 """Observation terms of policies: a closed list, the same names for Python and for controllers in C++.
 
-Frames and signs are those of legged_gym, Isaac Lab and mjlab: the base frame is the floating root body's, x forward,
-y left, z up.
+Frames and signs follow legged_gym, Isaac Lab and mjlab: the base frame is the frame of the floating root body, x
+forward, y left, z up.
 """
 
 from __future__ import annotations
@@ -71,7 +71,7 @@ _BY_NAME = {name: info for info in TERMS for name in (info.name, *info.aliases)}
 
 
 def term_info(name: str, file: str = "") -> TermInfo:
-    """The term of a name or alias. Raises InputError: there is none; the hint names the nearest and all."""
+    """The term of a name or alias. Raises InputError: no such term; the hint names the nearest and all terms."""
     found = _BY_NAME.get(name)
     if found is not None:
         return found
@@ -95,7 +95,7 @@ class RobotState:
 class GaitClock:
     """Gait phases of two legs half a period apart, as holosoma's policies were trained with them.
 
-    While no velocity is commanded both phases stand at pi; they begin at (0, pi) when it moves again.
+    While no velocity is commanded both phases stay at pi; they restart at (0, pi) with the next command.
     """
 
     _STILL = 0.01  # [m/s, rad/s] below which a command means standing
