@@ -1,4 +1,4 @@
-"""Logs: verified, replayed, rendered under another sky, exported."""
+"""Logs: verification, replay, rendering with another appearance, export."""
 from __future__ import annotations
 
 import os
@@ -21,7 +21,7 @@ Motion = Literal["stepped", "poses", "new_run"]
 
 @dataclass(frozen=True)
 class Verification:
-    """Outcome of stepping a log again: all states and hashes were compared."""
+    """Result of stepping a log again, with all states and hashes compared."""
 
     steps: int
     runs: int
@@ -40,7 +40,7 @@ class Verification:
 
 @dataclass(frozen=True)
 class RunReport:
-    """Report of a recorded run or replay. `error`: why it ended early, "" if it did not."""
+    """Report of a recorded run or replay. `error`: reason if it ended early, else ""."""
 
     out: Path
     steps: int
@@ -62,7 +62,8 @@ class RunReport:
 
 
 class Log:
-    """A log (MCAP), of Gloam's or any writer. `folder`: where the scene's files are now; None = where they were."""
+    """A log (MCAP) of Gloam or any other writer. `folder`: present folder of the scene's files; None = the original
+    one."""
 
     def __init__(self, file: PathLike, folder: PathLike | None = None) -> None:
         self.file = Path(file)
@@ -79,7 +80,8 @@ class Log:
         return float(self.info["duration"])
 
     def verify(self, progress: ProgressLike = None) -> Verification:
-        """Steps its runs again from the scene and Commands. Raises InputError: a stranger's log, files that changed (which)."""
+        """Steps its runs again from the scene and Commands. Raises InputError: a log of another program, changed
+        files (named in the message)."""
         with watch(progress, f"verifying {self.file.name}") as told:
             result = dict(_core.verify_log(self.file, self._folder, told))
         result["notes"] = tuple(result["notes"])
@@ -88,7 +90,8 @@ class Log:
     def replay(self, out: PathLike, settings: Mapping[str, Any] | None = None, *, motion: Motion = "stepped", run: int = 0,
                overlays: Sequence[PathLike] = (), outputs: Sequence[str] = (), overwrite: bool = False, progress: ProgressLike = None,
                **request: Any) -> RunReport:
-        """Records a run again into the folder `out`, seen otherwise: `settings` are options of the scene, `overlays` scene files laid over it.
+        """Records a run again into the folder `out`, with another appearance: `settings` are options of the scene,
+        `overlays` scene files that change it.
 
         `request`: cameras, width, height, rate [Hz], duration [s]. Raises InputError: a setting that would change how bodies move.
         """
@@ -102,7 +105,8 @@ class Log:
 
     def render(self, path: PathLike, settings: Mapping[str, Any] | None = None, *, camera: str | None = None, overwrite: bool = False,
                progress: ProgressLike = None, **request: Any) -> Path:
-        """A video (.mp4) of one camera of the run, seen under other `settings`: log.render("night.mp4", {"light.lux": 5}).
+        """Renders a video (.mp4) of one camera of the run with other `settings`: log.render("night.mp4",
+        {"light.lux": 5}).
 
         `camera`: None = the first one that the replay records.
         """
@@ -127,14 +131,15 @@ class Log:
     def variants(self, randomize: PathLike, count: int, out: PathLike, *, first_seed: int = 1, settings: Mapping[str, Any] | None = None,
                  motion: Motion = "stepped", outputs: Sequence[str] = (), overwrite: bool = False, progress: ProgressLike = None,
                  **request: Any) -> list[dict[str, Any]]:
-        """Replays that differ in what [[randomize]]s of a file draw, in OUT/0000, 0001 …; called again it goes on where it was stopped."""
+        """Records replays that differ in the values drawn by the [[randomize]] tables of a file, in OUT/0000, 0001 …;
+        another call resumes a cancelled one."""
         options = self._options(settings, motion, 0, (), outputs)
         options["request"] = {"out": Path(out), "overwrite": overwrite, **request}
         with watch(progress, f"variants of {self.file.name}") as told:
             return list(_core.replay_variants(self.file, options, Path(randomize), count, first_seed, told))
 
     def at(self, time: float, run: int = 0, seed: int = 1) -> Simulation:
-        """A simulation that stands at an instant of the run [s], to be gone on from."""
+        """Returns a paused simulation at an instant of the run [s], which can be continued."""
         checkpoint = _core.log_checkpoint(self.file, self._folder, run, float(time))
         sim = Simulation(World(_core.checkpoint_world(checkpoint)), checkpoint.seed)
         from .simulation import Checkpoint
@@ -143,7 +148,8 @@ class Log:
         return sim
 
     def export(self, topic: str, path: PathLike, format: str | None = None) -> int:
-        """Messages of a topic as csv, parquet, png (a folder) or mp4; None = by the path's suffix. Returns how many."""
+        """Writes the messages of a topic as csv, parquet, png (a folder) or mp4; None = by the path's suffix. Returns
+        the number of messages."""
         if format is None:
             format = Path(path).suffix.removeprefix(".") or "png"
         return int(_core.export_topic(self.file, topic, Path(path), format))
@@ -154,7 +160,7 @@ class Log:
         return times, poses
 
     def recover(self, path: PathLike) -> dict[str, Any]:
-        """Writes what is whole of a damaged log into a new file."""
+        """Writes the intact messages of a damaged log to a new file."""
         whole, messages, lost, damage = _core.recover_log(self.file, Path(path))
         return {"is_whole": whole, "messages": messages, "messages_lost": lost, "damage": list(damage)}
 

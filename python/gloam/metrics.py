@@ -26,7 +26,7 @@ class PresentMetrics:
         return self._values
 
     def begin(self) -> None:
-        """Forgets what was before a reset: they count anew."""
+        """Discards values from before a reset; metrics restart."""
         self._values = {}
 
     def close(self) -> None:

@@ -1,4 +1,4 @@
-"""Memory of a simulation as the package `mujoco` sees it: MjModel and MjData on the same arrays, without a copy."""
+"""Memory of a simulation for the package `mujoco`: MjModel and MjData on the same arrays, without a copy."""
 from __future__ import annotations
 
 import importlib.util
@@ -17,7 +17,7 @@ def _fits(version: str) -> bool:
 
 
 class MujocoMemory:
-    """Makes the mjData that a simulation steps in by the package, which then has it as its own."""
+    """Creates the mjData of a simulation with the package, which then owns it."""
 
     def __init__(self, mujoco: Any) -> None:
         self._mujoco = mujoco
@@ -27,7 +27,7 @@ class MujocoMemory:
 
     @classmethod
     def for_this_process(cls) -> MujocoMemory | None:
-        """None where the package is missing or of another version."""
+        """None if the package is missing or has another version."""
         if "mujoco" not in sys.modules and importlib.util.find_spec("mujoco") is None:
             return None
         try:
@@ -59,7 +59,8 @@ class MujocoMemory:
         return self._datas[memory.data_address]
 
     def model(self, memory: Any) -> Any:
-        """The model, of which only arrays of live fields may be written: the others cannot change while physics steps with them."""
+        """The model, in which only arrays of live fields are writable: the others cannot change while physics uses
+        them."""
         address = memory.data_address
         model = self._models[address]
         if self._guarded.get(address) is not model:

@@ -1,4 +1,4 @@
-"""What notebooks show: pictures as PNG, moving pictures, videos, scenes. No package is needed for it."""
+"""Display in notebooks: images as PNG, animations, videos, scenes. Requires no other package."""
 
 from __future__ import annotations
 
@@ -74,9 +74,9 @@ class Animation:
 
 
 class Video:
-    """An MP4 file that a notebook plays; it is embedded, so that the notebook can be passed on.
+    """An MP4 file that a notebook plays. It is embedded, so that the notebook can be shared.
 
-    Those of Gloam are H.264, which all browsers play: Video(log.render("night.mp4", …)).
+    Videos of Gloam are H.264, which all browsers play: Video(log.render("night.mp4", …)).
     """
 
     def __init__(self, path: str | os.PathLike[str], width: int | None = None) -> None:
@@ -97,7 +97,7 @@ class Video:
 def depth_picture(depth: ArrayLike, near: float | None = None, far: float | None = None) -> NDArray[np.uint8]:
     """Depth [m] as grey: near is white, far and nothing (inf, NaN) black.
 
-    depth: (H, W); near, far [m]: None = the least and the greatest that is there. Returns (H, W) uint8.
+    depth: (H, W); near, far [m]: None = the minimum and maximum of the image. Returns (H, W) uint8.
     """
     array = np.asarray(depth, dtype=np.float64)
     seen = array[np.isfinite(array)]
@@ -110,7 +110,7 @@ def depth_picture(depth: ArrayLike, near: float | None = None, far: float | None
 
 
 def scene_html(title: str, toml: str) -> str:
-    """A scene for a notebook: its title, and its text that opens at a click."""
+    """A scene for a notebook: its title and its text, which opens with a click."""
     return f"<details><summary>{html.escape(title)}</summary><pre>{html.escape(toml)}</pre></details>"
 
 

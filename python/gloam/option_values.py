@@ -1,4 +1,4 @@
-"""Lists and tables that a scene's options have: copies, of which a change would reach nobody and is refused."""
+"""Lists and tables of a scene's options: read-only copies, because changes of them would have no effect."""
 from __future__ import annotations
 
 from typing import Any, NoReturn

@@ -1,6 +1,6 @@
-"""Policies: networks in ONNX files that drive robots (docs/policies.md).
+"""Policies: networks in ONNX files that control robots (docs/policies.md).
 
-policy = gloam.Policy("walk.onnx", "walk.toml")     # the TOML only where the file's metadata does not tell enough
+policy = gloam.Policy("walk.onnx", "walk.toml")     # the TOML only if the file's metadata is incomplete
 drive = policy.attach(sim, "go2")
 drive.command(vx=0.5)
 sim.run_until(time=5)
@@ -40,20 +40,20 @@ def _read_toml(path: Path) -> dict[str, Any]:
 
 
 def read_policy_metadata(path: PathLike) -> dict[str, Any]:
-    """What an ONNX file tells of its policy, as {"policy": {...}, "observation": [...]} in the form of a policy's TOML.
+    """Reads the metadata of an ONNX file, as {"policy": {...}, "observation": [...]} in the form of a policy's TOML.
 
-    Empty where its metadata is neither mjlab's nor holosoma's. Raises as Policy.
+    Empty unless the metadata is from mjlab or holosoma. Raises the same errors as Policy.
     """
     return settings_of(Network(Path(path)).metadata, str(path))
 
 
 class Policy:
-    """A network with what it was trained with: `spec`. One thread, f32, on the CPU: the same observation gives the
-    same action.
+    """A network and the specification of its training, `spec`. One thread, f32, on the CPU: the same observation
+    gives the same action.
 
-    `settings`: a TOML whose keys replace those of the file's metadata. Raises ImportError: no package openvino;
-    IoError: no such file; InputError: no network, a damaged TOML, terms that do not fill the network's input, too
-    little known; UnsupportedError: several inputs.
+    `settings`: a TOML whose keys replace keys of the file's metadata. Raises ImportError: no package openvino;
+    IoError: no such file; InputError: not a network, a malformed TOML, terms that do not fill the network's input,
+    missing metadata; UnsupportedError: several inputs.
     """
 
     def __init__(self, path: PathLike, settings: PathLike | None = None) -> None:
@@ -80,7 +80,8 @@ class Policy:
             raise InputError(f"there are {len(spec.joints)} joints, the network gives {network.outputs} numbers", place)
 
     def infer(self, observation: ArrayLike) -> NDArray[np.float64]:
-        """Actions (n,) of an observation (m,), or (k, n) of (k, m), as the network gives them: not clipped, not scaled.
+        """Actions (n,) of an observation (m,), or (k, n) of (k, m), as output by the network: not clipped, not
+        scaled.
 
         Raises UsageError: another size; DivergedError: an action is not finite.
         """
@@ -100,10 +101,11 @@ class Policy:
         return action
 
     def attach(self, sim: Simulation, robot: Robot | str) -> PolicyDriver:
-        """Lets the policy drive a robot of a simulation from its next step on; "" = a bare model without robots.
+        """Attaches the policy to a robot of a simulation, from the next step; "" = a bare model without robots.
 
-        Raises NotFoundError: joints or actuators that the robot has not; UnsupportedError: actuators that take no
-        torque; UsageError: a timestep that does not divide the policy's period, a robot that is driven already.
+        Raises NotFoundError: joints or actuators that the robot does not have; UnsupportedError: actuators that
+        accept no torque; UsageError: a timestep that does not divide the policy's period, a robot that already has a
+        policy.
         """
         name = robot if isinstance(robot, str) else getattr(robot, "name", None)
         if name is None:

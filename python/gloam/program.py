@@ -12,7 +12,7 @@ from gloam import _core
 def program() -> Path:
     """The program: bin/gloam of the package, in a source tree that of the build folder.
 
-    Raises FileNotFoundError where neither is there.
+    Raises FileNotFoundError if neither exists.
     """
     module = Path(_core.__file__).resolve()
     candidates = [module.parent / "bin" / "gloam", module.parents[2] / "bin" / "gloam"]
@@ -25,7 +25,7 @@ def program() -> Path:
 
 
 def main() -> None:
-    """Becomes the program, with this process's arguments."""
+    """Replaces this process by the program, with the same arguments."""
     try:
         path = str(program())
     except FileNotFoundError as error:

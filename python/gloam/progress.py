@@ -1,4 +1,4 @@
-"""Progress of long jobs, told in a terminal or notebook once they take over 2 s."""
+"""Progress of long jobs, displayed in a terminal or notebook after 2 s."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _WIDTH = 24  # [columns] of a bar in a terminal
 
 
 def time_text(seconds: float) -> str:
-    """A duration [s] as people read it: "8 s", "2 min 05 s", "1 h 03 min"."""
+    """A readable duration [s]: "8 s", "2 min 05 s", "1 h 03 min"."""
     whole = max(0, round(seconds))
     if whole < 60:
         return f"{whole} s"
@@ -30,10 +30,10 @@ def time_text(seconds: float) -> str:
 
 
 class Bar:
-    """A progress bar; drawing is a subclass's. Called as jobs tell of themselves; silent for the first 2 s."""
+    """A progress bar; subclasses draw it. Called as jobs report progress; silent for the first 2 s."""
 
     def __init__(self, what: str, silence: float = _SILENCE) -> None:
-        """what: the job, for people; silence [s]: how long nothing is shown."""
+        """what: the job, for display; silence [s]: time without display at the start."""
         self.what = what
         self.shown = False
         self._silence = silence
@@ -104,7 +104,7 @@ class NotebookBar(Bar):
 
 
 def notebook_display() -> Callable[..., Any] | None:
-    """IPython.display.display where this Python is a notebook's kernel, else None."""
+    """IPython.display.display if this Python is a notebook's kernel, else None."""
     ipython = sys.modules.get("IPython")
     shell = ipython.get_ipython() if ipython is not None else None
     if shell is None or not hasattr(shell, "kernel"):
@@ -114,9 +114,9 @@ def notebook_display() -> Callable[..., Any] | None:
 
 
 def bar(what: str, always: bool = False) -> Bar | None:
-    """The bar that suits where this runs: a notebook's or a terminal's; None where nobody looks.
+    """The bar for a notebook or a terminal; None without either.
 
-    always: a line is written also where stderr is no terminal.
+    always: write a line even if stderr is not a terminal.
     """
     display = notebook_display()
     if display is not None:
@@ -126,9 +126,9 @@ def bar(what: str, always: bool = False) -> Bar | None:
 
 @contextmanager
 def watch(progress: ProgressLike, what: str) -> Iterator[Tell | None]:
-    """The function that a job tells of itself, or None for a job that need not tell.
+    """The function to which a job reports its progress, or None without reports.
 
-    progress: None = a bar where people look, True = always, False = none, or a function of the user's.
+    progress: None = a bar in notebooks and terminals, True = always, False = never, or a function of the user.
     """
     if callable(progress):
         yield progress

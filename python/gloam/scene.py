@@ -1,4 +1,4 @@
-"""Scenes: what a user writes, from files, text, dicts or code."""
+"""Scenes from files, text, dicts or code."""
 from __future__ import annotations
 
 import json
@@ -40,8 +40,9 @@ def _schema() -> dict[str, Any]:
 
 
 def describe(path: str) -> str:
-    """What an option means, as its place in the documentation says: describe("weather.visibility"), describe("robot.go.position"), where "go" may be
-    any name. Raises NotFoundError, with the nearest name, where there is no such option.
+    """Description of an option, as in the documentation: describe("weather.visibility"),
+    describe("robot.go.position"), where "go" may be any name. Raises NotFoundError, with the nearest name, if there
+    is no such option.
     """
     node: Any = _schema()
     root = node
@@ -86,13 +87,14 @@ def _resolve(node: Any, root: Any) -> Any:
 
 
 class Scene:
-    """A scene as written, editable until it is compiled. Options are reached by their paths, as `gloam run --set` takes them:
+    """A scene as written, editable until it is compiled. Options are accessed by their paths, as in `gloam run
+    --set`:
 
         scene = gloam.Scene("house.toml")
         scene["weather.visibility"] = 8
 
-    `path`: a scene (.toml) or a bare model (.xml, .urdf). `root`: no file outside this folder is read; `strict`: it is the model's own.
-    Raises InputError with file and line.
+    `path`: a scene (.toml) or a bare model (.xml, .urdf). `root`: files outside this folder are not read; `strict`:
+    use the model's own folder as root. Raises InputError with file and line.
     """
 
     def __init__(self, path: PathLike, root: PathLike = "", strict: bool = False) -> None:
@@ -106,14 +108,16 @@ class Scene:
 
     @classmethod
     def parse(cls, text: str, folder: PathLike = ".", root: PathLike = "", strict: bool = False) -> Self:
-        """A scene from the text of a scene file, as if that lay in `folder`."""
+        """A scene from the text of a scene file, as if that file were in `folder`."""
         return cls._of(_core.Scene.parse(text, Path(folder), os.fspath(root), strict))
 
     @classmethod
     def from_dict(cls, tables: Mapping[str, Any], folder: PathLike = ".", root: PathLike = "", strict: bool = False) -> Self:
-        """A scene from nested dicts; lists of dicts are what [[…]] is in a file: {"robot": [{"name": "go", "file": …}]}.
+        """A scene from nested dicts; lists of dicts correspond to [[…]] in a file: {"robot": [{"name": "go", "file":
+        …}]}.
 
-        Files are looked for from `folder` and may lie below `root` (docs/security.md); root="/" trusts all that the scene names.
+        Paths are relative to `folder`; files have to be below `root` (docs/security.md). root="/" allows every file
+        that the scene names.
         """
         return cls.parse(_toml.table_text(tables), folder, root, strict)
 
@@ -123,7 +127,7 @@ class Scene:
 
     @property
     def file(self) -> Path:
-        """File that it was read from; empty of scenes made in code."""
+        """File from which it was read; empty for scenes made in code."""
         return Path(self._scene.file)
 
     @property
@@ -140,7 +144,7 @@ class Scene:
         return self.copy()
 
     def __reduce__(self) -> tuple[Any, ...]:
-        """Pickled, it is its options: files that it names are read again where it is compiled."""
+        """Pickles only the options: files that they name are read again when the scene is compiled."""
         root, strict = self._scene.access
         return _unpickled, (type(self), self.to_toml(), os.fspath(self._scene.bare_model), os.fspath(self.file), os.getcwd(), root, strict, self.name)
 
@@ -166,7 +170,7 @@ class Scene:
         self._scene = changed
 
     def options(self) -> list[Option]:
-        """All options of the tables that stand in the scene."""
+        """All options of the tables that the scene contains."""
         return [Option(o["path"], frozen(_toml.from_text(o["value"])), o["unit"], o["low"], o["high"], tuple(o["choices"]), _description(o["path"]))
                 for o in self._scene.options()]
 
@@ -181,7 +185,8 @@ class Scene:
         return True
 
     def add(self, table: str, **options: Any) -> str:
-        """One more [[table]], or the single [table]: scene.add("camera", name="front", position=(2, 0, 1)). Returns its path, "camera.front"."""
+        """Adds a [[table]], or sets the single [table]: scene.add("camera", name="front", position=(2, 0, 1)).
+        Returns its path, "camera.front"."""
         name = options.get("name")
         if name is not None and f"{table}.{name}.name" in self:
             raise UsageError(f"there is a {table} '{name}' already", hint=f'set its options: scene["{table}.{name}.…"]')
@@ -190,7 +195,8 @@ class Scene:
         return f"{table}.{name}" if name is not None else table
 
     def overlay(self, change: PathLike | Mapping[str, Any]) -> Self:
-        """A scene changed by a second scene file, or by tables as of from_dict: lists change elements of the same name and add others."""
+        """Returns the scene changed by a second scene file, or by tables as for from_dict: lists change elements of
+        the same name and add others."""
         if isinstance(change, Mapping):
             return self._of(self._scene.overlay_text(_toml.table_text(change), "overlay"))
         text = os.fspath(change)
@@ -203,7 +209,8 @@ class Scene:
         return str(self._scene.to_toml())
 
     def compile(self, progress: ProgressLike = None, keyframe: str = "") -> World:
-        """Compiles it. `keyframe`: name or number, of a bare model, that it starts from. Raises InputError with file and line."""
+        """Compiles the scene. `keyframe`: name or number of the initial keyframe of a bare model. Raises InputError
+        with file and line."""
         with watch(progress, f"compiling {self.name}") as told:
             return World(_core.World.compile(self._scene, told, keyframe))
 

@@ -29,7 +29,7 @@ _alive: weakref.WeakSet[Simulation] = weakref.WeakSet()
 
 
 class Checkpoint:
-    """An instant to go back to or branch from. `hash`: of the state; a restored simulation has the same."""
+    """An instant to return to or branch from. `hash`: hash of the state; a restored simulation has the same hash."""
 
     def __init__(self, checkpoint: Any) -> None:
         self._checkpoint = checkpoint
@@ -43,10 +43,12 @@ class Checkpoint:
 
 
 class Simulation:
-    """A World that runs. It stands still until it is stepped or told to run().
+    """A running World. It is paused until step() or run() is called.
 
-    `pace`: of run(): "lockstep" and "fast" go as fast as they can, "realtime" by the wall clock times `speed`, "sensors" as "realtime" but slower where open sensors need it, none of whose messages is lost; `stats` has the speed reached and what each sensor costs. `timestep` [s]: None = the model's.
-    What is written into live arrays between two steps counts as input of the next step, after controllers, and is in logs.
+    `pace` of run(): "lockstep" and "fast" run as fast as possible, "realtime" by the wall clock times `speed`,
+    "sensors" like "realtime" but slower if open sensors need it, so that none of their messages is lost; `stats`
+    reports the achieved speed and the cost of each sensor. `timestep` [s]: None = the model's. Values written into
+    live arrays between two steps are inputs of the next step, after controllers, and are recorded in logs.
     """
 
     def __init__(self, world: World, seed: int = 1, timestep: float | None = None, pace: Pace = "lockstep", speed: float = 1.0) -> None:
@@ -123,7 +125,8 @@ class Simulation:
         return self._memory
 
     def _look(self) -> int:
-        """Number of the memory that physics steps in: another one after a recompile, a restore of another run, a failure."""
+        """Number of the memory in which physics steps; changes after a recompile, a restore of another run, or a
+        failure."""
         generation: int = self._core.generation
         if generation != self._generation:
             self._memory = self._core.memory
@@ -132,11 +135,12 @@ class Simulation:
 
     @property
     def model(self) -> Any:
-        """mujoco.MjModel of the model that is stepped. ImportError without the package mujoco.
+        """mujoco.MjModel of the running model. ImportError without the package mujoco.
 
-        Arrays of live fields (body_mass, geom_friction, actuator_gainprm, dof_damping, opt.gravity …) may be written while the simulation is paused:
-        that is an input of the next step, as set_live_field() is, and a reset takes it back. Other arrays are read only; writing another option
-        (opt.timestep …) or writing by name (model.geom("ball").size) raises UsageError at the next step.
+        Arrays of live fields (body_mass, geom_friction, actuator_gainprm, dof_damping, opt.gravity …) may be written
+        while the simulation is paused: the change is an input of the next step, like set_live_field(), and a reset
+        reverts it. Other arrays are read-only; writing another option (opt.timestep …) or writing by name
+        (model.geom("ball").size) raises UsageError at the next step.
         """
         model = MujocoMemory.required(self._mujoco).model(self.memory)
         self._core.watch_model()
@@ -144,7 +148,7 @@ class Simulation:
 
     @property
     def data(self) -> Any:
-        """mujoco.MjData that physics steps in; what is written while paused is input of the next step."""
+        """mujoco.MjData in which physics steps; values written while paused are inputs of the next step."""
         return MujocoMemory.required(self._mujoco).data(self.memory)
 
     def contacts(self) -> list[dict[str, Any]]:
@@ -160,13 +164,13 @@ class Simulation:
         return self._solver.value(self._core, field, element)
 
     def labels(self) -> list[dict[str, Any]]:
-        """One row for each drawn geom: part, geom, body, instance, instance_name, semantic, semantic_name."""
+        """One row for each rendered geom: part, geom, body, instance, instance_name, semantic, semantic_name."""
         return list(self._core.labels())
 
     @property
     def metrics(self) -> dict[str, float]:
-        """Present values of all metrics that the scene has (docs/metrics.md), sampled at record.metrics_rate as in a recorded run; they count from
-        the first time they are asked for."""
+        """Present values of all metrics of the scene (docs/metrics.md), sampled at record.metrics_rate as in a
+        recorded run, starting with the first access."""
         from .metrics import PresentMetrics
 
         if self._metrics is None:
@@ -175,7 +179,7 @@ class Simulation:
 
     # ---- time ----
     def step(self, n: int = 1) -> None:
-        """Takes n steps. Raises DivergedError: physics left the finite numbers."""
+        """Takes n steps. Raises DivergedError: physics produced a value that is not finite."""
         self._core.step(n)
 
     def run_until(self, time: float | None = None, *, step: int | None = None) -> None:
@@ -190,7 +194,8 @@ class Simulation:
         self._core.run_until(step)
 
     def step_until(self, source: Source) -> Any:
-        """Steps until the next message of a camera, LiDAR or sensor reaches a reader, and returns that. The first may be of this instant."""
+        """Steps until the next message of a camera, LiDAR or sensor reaches a reader, and returns it. The first
+        message may be from this instant."""
         if not isinstance(source, Source) or source._sim is not self:
             raise TypeError(f"a camera, LiDAR or sensor of this simulation is expected, not {source!r}")
         return source._next()
@@ -205,7 +210,7 @@ class Simulation:
         self._core.pause()
 
     def reset(self) -> None:
-        """Back to the initial state, where it stands; time and frames count from 0 again."""
+        """Returns to the initial state and pauses; time and frame numbers restart at 0."""
         self._core.reset()
         if self._metrics is not None:
             self._metrics.begin()
@@ -214,7 +219,8 @@ class Simulation:
         return Checkpoint(self._core.checkpoint())
 
     def restore(self, checkpoint: Checkpoint) -> None:
-        """Stands at a checkpoint of this or another simulation of the same scene and timestep. Raises PartialError: it was led there by hooks."""
+        """Returns to a checkpoint of this or another simulation of the same scene and timestep. Raises PartialError:
+        hooks had changed the run."""
         if not isinstance(checkpoint, Checkpoint):
             raise TypeError(f"a Checkpoint is expected, not {checkpoint!r}")
         self._core.restore(checkpoint._checkpoint)
@@ -222,20 +228,22 @@ class Simulation:
 
     # ---- changes ----
     def set(self, path: str | Mapping[str, Any], value: Any = None, progress: ProgressLike = None) -> None:
-        """Changes options of the scene and goes on at this instant, as recompile() does: set("weather.visibility", 8), or set({…})."""
+        """Changes options of the scene and continues from this instant, like recompile(): set("weather.visibility",
+        8), or set({…})."""
         settings = path if isinstance(path, Mapping) else {path: value}
         scene = self.scene
         scene.update(settings)
         self.recompile(scene, progress)
 
     def recompile(self, source: Scene | World, progress: ProgressLike = None) -> None:
-        """Goes on in another World: what has the same name keeps its state. At time 0, with no Command waiting, it begins anew there."""
+        """Continues in another World: elements of the same name keep their state. At time 0, without queued Commands,
+        it starts from the initial state of the new World."""
         world = source if isinstance(source, World) else as_scene(source).compile(progress)
         self._core.recompile(world._world)
         self._take_world(world)
 
     def _take_world(self, world: World) -> None:
-        """Goes on in another World, and keeps nothing of the one before, which may have 100 MB."""
+        """Continues in another World and releases the previous one, which may have 100 MB."""
         self._world = world
         self._core_world = world._world
         self._renderer = None
@@ -254,16 +262,18 @@ class Simulation:
     def set_live_field(self, field: str, values: Any, first: int = 0) -> None:
         """Changes a field of the model at the next step, from element `first` on: "gravity", "body_mass", "geom_color" … (docs/python.md).
 
-        A logged input like any other: a replay repeats it, a reset takes it back. No World is compiled.
+        The change is a logged input: a replay repeats it, a reset reverts it. No World is compiled.
         """
         self._core.set_live_field(field, first, values)
 
     def scale_dynamics(self, *, mass: ArrayLike | None = None, friction: ArrayLike | None = None, gains: ArrayLike | None = None,
                        armature: ArrayLike | None = None, damping: ArrayLike | None = None) -> None:
-        """Changes how all of it moves, until the reset: factors of what the model's files say, one number or one for each element.
+        """Scales the dynamics of the whole model until the reset, by factors of the values in the model's files: one
+        number, or one for each element.
 
-        Bodies' masses, with their inertias; friction of geoms; gains of actuators; armature and damping of joints. Logged inputs of the next step
-        that need no recompile, for domain randomisation. A factor of 1 takes an earlier one back. Robot.scale_dynamics() is for one robot.
+        Bodies' masses, with their inertias; friction of geoms; gains of actuators; armature and damping of joints.
+        Logged inputs of the next step that need no recompile, for domain randomisation. A factor of 1 reverts an
+        earlier one. Robot.scale_dynamics() is for one robot.
         """
         Dynamics(self).scale(mass=mass, friction=friction, gains=gains, armature=armature, damping=damping)
 
@@ -286,12 +296,12 @@ class Simulation:
         return list(self._core.topics())
 
     def subscribe(self, topics: Sequence[str], callback: Callable[[Any], None] | None = None, required: bool = True) -> Subscription:
-        """Opens topics by name, * standing for any text: for message in subscription: message.decode()."""
+        """Opens topics by name, * matches any text: for message in subscription: message.decode()."""
         names = [topics] if isinstance(topics, str) else list(topics)
         return Subscription(_core.open_topics(self._core, names, required, callback))
 
     def publish(self, topic: str, message: Mapping[str, Any] | bytes) -> None:
-        """A message to an input topic: its fields as a dict, left out ones 0, or CDR."""
+        """Publishes a message to an input topic: its fields as a dict (omitted fields are 0), or CDR."""
         if not isinstance(message, bytes):
             kinds = {t["name"]: t["type"] for t in self.topics() if t["is_input"]}
             if topic not in kinds:
@@ -302,7 +312,8 @@ class Simulation:
     # ---- records, pictures, pages ----
     @contextmanager
     def record(self, file: str | os.PathLike[str], topics: Sequence[str] | None = None, *, overwrite: bool = False, **options: Any) -> Iterator[Any]:
-        """Writes a log (MCAP) from now on to the end of the block. `options`: required, durable, embed, state_rate, width, height."""
+        """Records a log (MCAP) until the end of the block. `options`: required, durable, embed, state_rate, width,
+        height."""
         if topics is not None:
             options["topics"] = list(topics)
         log = _core.start_log(self._core, Path(file), {"overwrite": overwrite, **options})
@@ -329,7 +340,8 @@ class Simulation:
         return self._renderer
 
     def _posed(self, qpos: ArrayLike) -> Any:
-        """A run of its own that stands, at rest, in another state of the same World: a step so short that nothing moves takes it there."""
+        """A separate, paused run at rest in another state of the same World, reached by a step so short that nothing
+        moves."""
         if self._other is None or self._other.world is not self._world:
             self._other = Simulation(self._world, self.seed, timestep=1e-9)
         other = self._other
@@ -352,7 +364,8 @@ class Simulation:
 
     # ---- end ----
     def close(self) -> None:
-        """Ends it and its streams. Arrays stay readable. Raises StuckError where a callback or hook has not returned after 5 s."""
+        """Ends the simulation and its streams. Arrays stay readable. Raises StuckError if a callback or hook has not
+        returned after 5 s."""
         try:
             if not self._core.is_closed:
                 if self._log is not None:
@@ -392,7 +405,7 @@ def load(source: Any, seed: int | None = None, timestep: float | None = None, pa
          progress: ProgressLike = None, settings: Mapping[str, Any] | None = None) -> Simulation:
     """A simulation of a scene file, a model (MJCF, URDF), a Scene, a dict of tables or a World. `settings`: options to change before.
 
-    `seed`: None = the scene's own. It is that of everything random, of [[randomize]] and generators too.
+    `seed`: seed of all random numbers, including [[randomize]] and generators; None = the scene's own.
     """
     if isinstance(source, World):
         if settings:

@@ -13,14 +13,14 @@ if TYPE_CHECKING:
 
 
 class World:
-    """What a Scene compiles to. It never changes and is shared by everything that runs it."""
+    """A compiled Scene: immutable, and shared by all its simulations."""
 
     def __init__(self, world: _core.World) -> None:
         self._world = world
 
     @cached_property
     def info(self) -> dict[str, Any]:
-        """Names of all elements, numbers of the model, options that [[randomize]] drew ("drawn")."""
+        """Names of all elements, numbers of the model, values drawn by [[randomize]] ("drawn")."""
         return dict(self._world.info())
 
     @cached_property
@@ -67,17 +67,17 @@ class World:
 
     @property
     def notes(self) -> list[str]:
-        """What is odd about the scene and taken all the same, and where."""
+        """Suspicious but accepted properties of the scene, with their locations."""
         return list(self._world.notes())
 
     @property
     def unsupported(self) -> list[str]:
-        """What is in the files and is not simulated or drawn, and where."""
+        """Elements of the files that are not simulated or rendered, with their locations."""
         return list(self._world.unsupported())
 
     @property
     def scene(self) -> Scene:
-        """The Scene that it was compiled from; changed, it compiles again."""
+        """The original Scene, which can be changed and compiled again."""
         from .scene import Scene
 
         return Scene._of(self._world.written_scene())
@@ -96,7 +96,8 @@ class World:
         return list(self._world.streams())
 
     def export_mjcf(self, folder: str | os.PathLike[str]) -> list[str]:
-        """Writes the whole level as one MJCF with its assets into FOLDER/scene.xml. Returns what MJCF cannot hold."""
+        """Writes the whole scene as one MJCF with its assets into FOLDER/scene.xml. Returns the elements that MJCF
+        cannot represent."""
         return list(self._world.export_mjcf(Path(folder)))
 
     def __reduce__(self) -> Any:

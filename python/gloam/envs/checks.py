@@ -1,4 +1,4 @@
-"""Checks of what callers give."""
+"""Checks of arguments."""
 
 from __future__ import annotations
 
@@ -9,10 +9,10 @@ from gloam.envs.noise import Array
 
 
 def checked_actions(actions: object, space: spaces.Box, num_worlds: int) -> Array:
-    """Actions (num_worlds, *shape), as float64, brought into the limits of the space of one world.
+    """Actions (num_worlds, *shape), as float64, clipped to the limits of the space of one world.
 
-    Errors: ValueError for another shape, what is no number, NaN or an infinity. Values beyond the limits are moved to
-    them, as servos do.
+    Errors: ValueError for another shape, values that are not numbers, NaN or an infinity. Values beyond the limits
+    are clipped, as in servos.
     """
     try:
         values = np.asarray(actions, dtype=np.float64)

@@ -46,7 +46,7 @@ _KEYS = (
 
 
 class DeclaredTask(Task):
-    """A task made of tables (docs/python_envs.md). Errors: ValueError for a table that makes no sense."""
+    """A task made from tables (docs/python_envs.md). Errors: ValueError for an invalid table."""
 
     places = False
 
@@ -152,7 +152,7 @@ class _DeclaredWorld(TaskWorld):
         return Outcome(total, bool(met), info)
 
     def check_names(self) -> None:
-        """Raises NotFoundError for a metric that ends episodes and that the scene has not."""
+        """Raises NotFoundError for a terminating metric that the scene does not have."""
         for one in self._task.terminations:
             if one.metric is not None:
                 self._metrics.value(one.metric)
@@ -176,13 +176,13 @@ def make_env(
     layout: Layout = "dict",
     **settings: Any,
 ) -> Env:
-    """An environment of a scene, or of a TOML file that says all of this (then the other arguments are left out).
+    """An environment of a scene, or of a TOML file that contains all settings (without the other arguments).
 
     observations: by name, {"metric": …}, {"topic": …, "field": …}, {"camera": …, "output": …}, {"lidar": …},
     {"sensor": …}, {"joints": robot}, {"joint_velocities": robot} or a function of the Simulation, each with noise,
-    clip, scale, delay and history. actions: {"controls": robot}, {"command": robot}, {"joint_goals": robot}, a list of
-    them. reward: [{"metric": …, "weight": …}]. termination: [{"metric": …, "above": …}]. settings: those of
-    EnvSettings. docs/python_envs.md has all. Errors: ValueError, InputError of the scene, NotFoundError.
+    clip, scale, delay and history. actions: {"controls": robot}, {"command": robot}, {"joint_goals": robot}, a list
+    of them. reward: [{"metric": …, "weight": …}]. termination: [{"metric": …, "above": …}]. settings: as for
+    EnvSettings. docs/python_envs.md lists all of them. Errors: ValueError, InputError of the scene, NotFoundError.
     """
     given = dict(observations=observations, actions=actions, reward=reward, termination=termination)
     task, made, steps = _parsed(
@@ -207,7 +207,7 @@ def make_vec_env(
     layout: Layout = "dict",
     **settings: Any,
 ) -> VectorEnv:
-    """num_envs worlds of what make_env makes."""
+    """num_envs worlds of the environment of make_env."""
     given = dict(observations=observations, actions=actions, reward=reward, termination=termination)
     task, made, steps = _parsed(
         scene, {**given, **dict(control_interval=control_interval, settle=settle, layout=layout)}, settings

@@ -1,4 +1,4 @@
-"""Tables of actions, as make_env takes them."""
+"""Tables of actions for make_env."""
 
 from __future__ import annotations
 
@@ -23,14 +23,14 @@ class Actuation(ABC):
 
     @abstractmethod
     def default_limits(self, sim: gloam.Simulation) -> tuple[Array, Array]:
-        """Limits that the model gives; infinite where it gives none."""
+        """Limits of the model; infinite if it has none."""
 
     @abstractmethod
     def apply(self, sim: gloam.Simulation, action: Array) -> None:
-        """Gives it to the robot."""
+        """Applies the action to the robot."""
 
     def limits(self, sim: gloam.Simulation) -> tuple[Array, Array]:
-        """Lowest and highest action. Errors: ValueError where they are not known, or cross; NotFoundError."""
+        """Lowest and highest action. Errors: ValueError if they are unknown, or low exceeds high; NotFoundError."""
         low, high = self.default_limits(sim)
         try:
             if self.low is not None:

@@ -1,4 +1,4 @@
-"""Tables of observations, rewards and terminations, as make_env takes them."""
+"""Tables of observations, rewards and terminations for make_env."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ _STAGES = ("noise", "clip", "scale", "delay", "history")
 
 @dataclass(frozen=True)
 class ObservationSpec:
-    """One observation: kind and value say where it comes from, `keys` more about that."""
+    """One observation: kind and value define its source, `keys` its other options."""
 
     name: str
     kind: str
@@ -130,7 +130,8 @@ class RewardSpec:
 
 @dataclass(frozen=True)
 class TerminationSpec:
-    """Ends an episode when a metric is above or below a limit, or a function is true. success: whether that is well."""
+    """Ends an episode when a metric is above or below a limit, or a function is true. success: whether this counts as
+    success."""
 
     metric: str | None = None
     function: Callable[[gloam.Simulation], Any] | None = None

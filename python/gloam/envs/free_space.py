@@ -1,4 +1,4 @@
-"""Where on a floor a robot can be, and how far it is from there to a goal around what stands in the way."""
+"""Free space on a floor, and lengths of paths around obstacles to a goal."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ class FreeSpace:
     """A grid of the floor: cells are free where a disc of `radius` fits.
 
     origin: (x, y) of the middle of cell [0, 0] [m]; cell: their side [m]; blocked: [row along y, column along x].
-    Things are taken for the boxes around them, as they stand at the beginning.
+    Obstacles are approximated by their bounding boxes at the initial state.
     """
 
     def __init__(self, origin: tuple[float, float], cell: float, blocked: Array) -> None:
@@ -35,11 +35,11 @@ class FreeSpace:
         heights: tuple[float, float] = (0.03, 0.4),
         cell: float = 0.1,
     ) -> FreeSpace:
-        """The largest free region of a World that hangs together.
+        """The largest connected free region of a World.
 
-        ignore: bodies that are no obstacles (numbers of MuJoCo); radius, cell: [m]; heights: what lies wholly below or
-        above them is no obstacle [m]. In generated places only their floors count.
-        Errors: UsageError if there are no walls, or no room between them.
+        ignore: bodies that are not obstacles (MuJoCo ids); radius, cell: [m]; heights: geoms entirely below or above
+        them are not obstacles [m]. In generated places only their floors count. Errors: UsageError if there are no
+        walls, or no room between them.
         """
         boxes, floors = _boxes(world, ignore, heights)
         corners = (floors if len(floors) > 0 else boxes).reshape(-1, 2)
@@ -87,9 +87,9 @@ class FreeSpace:
         return not self.blocked[self.index(point)]
 
     def distances(self, goal: Array) -> Array:
-        """Length of the way from the middle of each cell to (x, y) [m], over the grid's 8 neighbours; inf: no way.
+        """Length of the path from the middle of each cell to (x, y) [m], over the grid's 8 neighbours; inf: no path.
 
-        At most 8 % more than the shortest way, as such grids are.
+        At most 8 % longer than the shortest path, as in all such grids.
         """
         field: Array = np.full(self.blocked.shape, np.inf)
         field[self.index(goal)] = 0.0
@@ -107,7 +107,7 @@ class FreeSpace:
             field = best
 
     def distance(self, field: Array, point: Array) -> float:
-        """Length of the way from (x, y) [m], by the `distances` of a goal: over the nearest cells; inf: no way."""
+        """Length of the path from (x, y) [m], from the `distances` of a goal over the nearest cells; inf: no path."""
         row, column = self.index(point)
         rows = slice(max(row - 2, 0), row + 3)
         columns = slice(max(column - 2, 0), column + 3)
@@ -120,7 +120,7 @@ class FreeSpace:
     def sample(
         self, rng: np.random.Generator, field: Array | None = None, reach: tuple[float, float] = (0, 0)
     ) -> Array:
-        """A free point (x, y) [m]; with `field`, one whose way to the field's goal is within `reach` [m].
+        """A free point (x, y) [m]; with `field`, a point whose path to the field's goal is within `reach` [m].
 
         Errors: UsageError if there is none.
         """

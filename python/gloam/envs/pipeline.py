@@ -1,7 +1,7 @@
 """The observation pipeline of n worlds: terms, each noise -> clip -> scale -> delay -> history.
 
-The order and the terms are those of mjlab's observation manager. All that is remembered (noise generators, biases,
-delays, delay buffers, histories) belongs to one world each: a reset of some worlds changes nothing of the others'.
+The order and the terms follow mjlab's observation manager. Each world has its own state (noise generators, biases,
+delays, delay buffers, histories): a reset of some worlds does not affect the others.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ Observation = dict[str, Array] | Array
 
 
 class TermBuffer:
-    """What one term remembers of n worlds."""
+    """State of one term for n worlds."""
 
     def __init__(self, term: Term, num_worlds: int) -> None:
         self.term = term
@@ -37,7 +37,7 @@ class TermBuffer:
         self._rng[world] = np.random.default_rng([seed, zlib.crc32(self.term.name.encode())])
 
     def reset(self, worlds: Array) -> None:
-        """Forgets what these worlds saw, and draws their delay and the bias of their noise anew."""
+        """Clears the state of these worlds, and draws new delays and biases of their noise."""
         self._pushed[worlds] = 0
         least, most = self.term.lags
         for world in worlds:
@@ -50,7 +50,8 @@ class TermBuffer:
                 self._bias[world] = self.term.noise.bias(rng, self.term.shape)
 
     def push(self, raw: Array, worlds: Array) -> Array:
-        """The term of these worlds as it is seen now. raw: (k, *shape), worlds: (k,); returns (k, *output_shape)."""
+        """The present observation of the term in these worlds. raw: (k, *shape), worlds: (k,); returns (k,
+        *output_shape)."""
         term = self.term
         if raw.shape != (len(worlds), *term.shape):
             raise ValueError(f"term '{term.name}' is {term.shape}, not {raw.shape[1:]}, of {len(worlds)} worlds")
@@ -76,7 +77,7 @@ class TermBuffer:
         return np.asarray(raw + np.stack(error) + self._bias[worlds])
 
     def _delayed(self, seen: Array, worlds: Array) -> Array:
-        """What was seen `lag` steps ago; at first, the first value of the episode."""
+        """The value from `lag` steps ago; initially, the first value of the episode."""
         now = self._pushed[worlds]
         size = self._late.shape[1]
         self._late[worlds, now % size] = seen
@@ -84,10 +85,10 @@ class TermBuffer:
 
 
 class Pipeline:
-    """Makes observations of n worlds out of raw values.
+    """Computes observations of n worlds from raw values.
 
-    layout: "dict", one entry for each term, or "vector", all terms in a row, flattened (float32).
-    Errors: ValueError for no term, or two of one name.
+    layout: "dict", one entry for each term, or "vector", all terms in a row, flattened (float32). Errors: ValueError
+    without terms, or with two terms of one name.
     """
 
     def __init__(self, terms: Sequence[Term], num_worlds: int, layout: Layout = "dict") -> None:

@@ -1,8 +1,8 @@
-"""PointGoal: a cart with a camera or a LiDAR drives to a point, around what stands in its way.
+"""PointGoal: a cart with a camera or a LiDAR drives to a point, around obstacles.
 
-The task and its measure, SPL, are those of Anderson et al., "On Evaluation of Embodied Navigation Agents"
-(arXiv:1807.06757); the goal is given in polar coordinates and the reward is the way gained, as Savva et al. have it
-("Habitat", arXiv:1904.01201).
+The task and its measure, SPL, follow Anderson et al., "On Evaluation of Embodied Navigation Agents"
+(arXiv:1807.06757); the goal is given in polar coordinates and the reward is the progress towards it, as in Savva et
+al. ("Habitat", arXiv:1904.01201).
 """
 
 from __future__ import annotations
@@ -32,11 +32,11 @@ FOOTPRINT = 0.2  # radius of the cart, with a margin [m]
 
 
 class PointGoal(Task):
-    """observation: what it sees with. place: a room of 4 x 4 m, or a generated house (house_seed, rooms).
+    """observation: its sensor. place: a room of 4 x 4 m, or a generated house (house_seed, rooms).
 
-    size: (width, height) of pictures [px]; beams: of a LiDAR's turn. reach: least and most way to the goal [m].
-    radius: at which a goal is reached [m]. max_range: of depth and LiDAR [m]. tier, spp, denoise: of pictures.
-    Errors: ValueError.
+    size: (width, height) of images [px]; beams: LiDAR beams per turn. reach: minimum and maximum path length to the
+    goal [m]. radius: distance at which a goal is reached [m]. max_range: of depth and LiDAR [m]. tier, spp, denoise:
+    of images. Errors: ValueError.
     """
 
     control_interval = 0.1
@@ -126,7 +126,7 @@ class PointGoal(Task):
         return spaces.Box(-1.0, 1.0, (2,), np.float32)
 
     def terms(self, world: gloam.World) -> Sequence[Term]:
-        """What is seen, and "goal": its distance [m] and the cosine and sine of its bearing (left is positive)."""
+        """Sensor data, and "goal": its distance [m] and the cosine and sine of its bearing (left is positive)."""
         width, height = self.size
         limit = (0.0, self.max_range)
         sight = {
@@ -140,7 +140,7 @@ class PointGoal(Task):
         return _PointGoalWorld(sim, self, self.free_space(sim.world))
 
     def free_space(self, world: gloam.World) -> FreeSpace:
-        """Where the cart can be; made once."""
+        """Free space of the cart; computed once."""
         with self._lock:
             if self._space is None:
                 cart = {number for number, name in enumerate(world.bodies) if name.startswith("cart/")}
@@ -192,7 +192,7 @@ class _PointGoalWorld(TaskWorld):
         return {self._task.observation: self._source.read(), "goal": goal}
 
     def judge(self, action: Array) -> Outcome:
-        """Reward: the way gained [m], less 0.01, and 5 for the goal."""
+        """Reward: progress towards the goal [m], minus 0.01, and 5 for the goal."""
         position = self._position
         self._driven += float(np.linalg.norm(position - self._last))
         self._last = position.copy()
@@ -213,7 +213,7 @@ class _PointGoalWorld(TaskWorld):
 
 
 def _point(value: object, size: int, space: FreeSpace) -> Array:
-    """Numbers of an option of reset. Errors: ValueError for another count, NaN, or a place that is not free."""
+    """Numbers from an option of reset. Errors: ValueError for another count, NaN, or a place that is not free."""
     point = np.asarray(value, dtype=np.float64)
     if point.shape != (size,) or not np.isfinite(point).all():
         raise ValueError(f"{value!r}: {size} finite numbers are expected")

@@ -1,4 +1,4 @@
-"""Settings that every environment takes, whatever its task is."""
+"""Settings of every environment, independent of its task."""
 
 from __future__ import annotations
 
@@ -25,13 +25,14 @@ class EnvSettings:
         the physics step.
     sensor_latency: by the name of a term [s], a number or (least, most); rounded up to control steps. It adds to
         the delay that the term has.
-    noise: by the name of a term, in its raw unit; takes the place of the noise that the term has.
-    history: by the name of a term: how many of its newest values are given.
-    randomize: by the path of an option of the scene: (low, high), numbers or lists of numbers, drawn evenly for each
-        episode. The scene is compiled again at each reset, which takes its time.
-    dynamics: factors (low, high) of what the model's files say, by "mass", "friction", "gains", "armature" or "damping", drawn evenly for each
-        episode and each body, geom, actuator or joint of the model. Inputs of the episode's first step, without a recompile.
-    threads: that step worlds; None = one for each core.
+    noise: by the name of a term, in its raw unit; replaces the noise of the term.
+    history: by the name of a term: number of its newest values in the observation.
+    randomize: by the path of an option of the scene: (low, high), numbers or lists of numbers, drawn uniformly for
+        each episode. The scene is compiled again at each reset, which takes time.
+    dynamics: factors (low, high) of the values in the model's files, by "mass", "friction", "gains", "armature" or
+        "damping", drawn uniformly for each episode and each body, geom, actuator or joint of the model. They are inputs
+        of the episode's first step, without a recompile.
+    threads: number of threads that step worlds; None = one for each core.
     render_camera: name of the camera of render(); None = the scene's first. render_size: (width, height) [px].
     """
 

@@ -20,11 +20,11 @@ _FIRST = np.zeros(1, dtype=np.int64)
 
 
 class Env(gym.Env[Observation, Array]):
-    """One world of a task. The same seed and actions give the same as world 0 of a VectorEnv, to the bit.
+    """One world of a task. The same seed and actions give the same results as world 0 of a VectorEnv, bit for bit.
 
-    task: what is done. settings: delays, noise and the like. max_episode_steps: control steps after which an episode
-    is truncated; None = never, or by gymnasium's TimeLimit. render_mode: None or "rgb_array".
-    Errors: those of the scene; ValueError for other settings.
+    task: the task. settings: delays, noise and so on. max_episode_steps: control steps after which an episode is
+    truncated; None = never, or by gymnasium's TimeLimit. render_mode: None or "rgb_array". Errors: errors of the
+    scene; ValueError for invalid settings.
     """
 
     metadata: dict[str, Any] = {"render_modes": ["rgb_array"], "render_fps": 10}
@@ -50,7 +50,7 @@ class Env(gym.Env[Observation, Array]):
 
     @property
     def sim(self) -> gloam.Simulation:
-        """The simulation; after a reset with another seed it is another one. Errors: ClosedError."""
+        """The simulation; a reset with another seed replaces it. Errors: ClosedError."""
         if not self._worlds.slots:
             raise gloam.ClosedError("the environment is closed")
         return self._worlds.slots[0].sim
@@ -63,9 +63,10 @@ class Env(gym.Env[Observation, Array]):
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
     ) -> tuple[Observation, dict[str, Any]]:
-        """Begins an episode. seed: >= 0, of all random numbers, the simulation's too; None goes on with them.
+        """Begins an episode. seed: >= 0, for all random numbers, including the simulation's; None continues the
+        present sequences.
 
-        options: those of the task, see its page. Returns the observation and `info`.
+        options: options of the task, see its page. Returns the observation and `info`.
         """
         assert self.sim is not None
         super().reset(seed=seed)
@@ -87,12 +88,12 @@ class Env(gym.Env[Observation, Array]):
         return _only(result.observation), float(result.rewards[0]), is_done, is_late and not is_done, result.infos[0]
 
     def render(self) -> Any:
-        """Picture of the present instant, (height, width, 3) uint8, in mode "rgb_array", else None."""
+        """Image of the present instant, (height, width, 3) uint8, in mode "rgb_array", else None."""
         assert self.sim is not None
         return self._worlds.render(0) if self.render_mode == "rgb_array" else None
 
     def __reduce__(self) -> Any:
-        """Pickled or copied, an environment is made again by its spec: it begins anew and has to be reset."""
+        """A pickled or copied environment is made again from its spec, and has to be reset."""
         if self.spec is None:
             raise TypeError("an environment without a spec cannot be pickled or copied: register it and make it with gym.make(), whose env.spec makes "
                             "another one, or send the function that makes it")
@@ -109,7 +110,7 @@ class Env(gym.Env[Observation, Array]):
 
 
 def made_by_spec(spec: EnvSpec) -> gym.Env[Any, Any]:
-    """What gym.make(spec) makes, without its wrappers, which are pickled by themselves."""
+    """The environment of gym.make(spec) without its wrappers, which are pickled separately."""
     return gym.make(spec).unwrapped
 
 

@@ -1,4 +1,4 @@
-"""Where raw values come from: cameras, LiDARs, sensors, joints, topics and metrics of one simulation."""
+"""Sources of raw values: cameras, LiDARs, sensors, joints, topics and metrics of one simulation."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ class Source:
     """A quantity of one simulation."""
 
     def begin(self) -> None:
-        """Forgets the episode before; to be called after a reset."""
+        """Clears the previous episode; call it after a reset."""
 
     def read(self) -> Array:
         """Its value at the present instant; a new array."""
@@ -27,7 +27,7 @@ class Source:
 
 
 class FunctionSource(Source):
-    """What a function of the simulation returns: a number or an array of always the same shape."""
+    """The result of a function of the simulation: a number, or an array of constant shape."""
 
     def __init__(self, sim: gloam.Simulation, function: Callable[[gloam.Simulation], Any]) -> None:
         self._sim, self._function = sim, function
@@ -37,10 +37,10 @@ class FunctionSource(Source):
 
 
 class CameraSource(Source):
-    """A channel of a camera's picture of the present instant: what a reset placed is in the first one already.
+    """A channel of a camera's image of the present instant; the first image already shows the state after a reset.
 
     output: "rgb" (height, width, 3) uint8, "depth" (height, width) [m], "ids", "semantic", or another channel of a
-    frame. far: depth where nothing is seen [m]. render: "tier", "spp" and the like.
+    frame. far: depth where nothing is visible [m]. render: "tier", "spp" and the like.
     """
 
     def __init__(
@@ -95,7 +95,7 @@ class LidarSource(Source):
 
 
 class SensorSource(Source):
-    """Numbers of one of MuJoCo's sensors, without the errors that a [[sensor]] gives it."""
+    """Numbers of a MuJoCo sensor, without the errors of a [[sensor]] table."""
 
     def __init__(self, sim: gloam.Simulation, sensor: str) -> None:
         self._sensor = sim.sensors[sensor]
@@ -115,10 +115,10 @@ class JointSource(Source):
 
 
 class TopicSource(Source):
-    """Numbers of the newest message of a topic, as ROS's readers would have them by now.
+    """Numbers of the newest message of a topic that ROS subscribers would have received by now.
 
     field: place in the message, parts with dots between: "twist.twist.linear"; a table gives its numbers in order.
-    Errors: UsageError if no message has come yet; NotFoundError for a field that it has not.
+    Errors: UsageError if no message has come yet; NotFoundError for an unknown field.
     """
 
     def __init__(self, sim: gloam.Simulation, topic: str, field: str) -> None:
@@ -148,7 +148,8 @@ class TopicSource(Source):
 
 
 class Metrics:
-    """Metrics of one simulation, as the topic /metrics told them last: 10 a second, or at the rate of a [[topic]]."""
+    """Metrics of one simulation, from the last message of the topic /metrics: 10 per second, or at the rate of a
+    [[topic]]."""
 
     def __init__(self, sim: gloam.Simulation) -> None:
         self._sim = sim
@@ -161,7 +162,7 @@ class Metrics:
         self._step = self._sim.step_count
 
     def value(self, name: str) -> float:
-        """Present value; NaN where it has none now. Errors: NotFoundError for a name that the scene has not."""
+        """Present value; NaN if it has none now. Errors: NotFoundError for an unknown name."""
         step = self._sim.step_count
         if step != self._step:
             self._values = self._sim.metrics

@@ -1,4 +1,4 @@
-"""What a task is: a scene, spaces, and for each world how it begins, acts, sees and is judged."""
+"""Definition of a task: a scene, spaces, and for each world its reset, actions, observations and rewards."""
 
 from __future__ import annotations
 
@@ -35,14 +35,15 @@ class TaskWorld(ABC):
         self.sim = sim
 
     def begin(self, rng: np.random.Generator, options: Mapping[str, Any]) -> None:
-        """Begins an episode: the simulation is at its initial state; places and draws what the task draws."""
+        """Begins an episode: the simulation is at its initial state; draws and places the random elements of the
+        task."""
 
     def decide(self, action: Array) -> None:
-        """Told of an action at the beginning of its control step, before it is on its way to the robot."""
+        """Called with an action at the beginning of its control step, before its delay."""
 
     @abstractmethod
     def apply(self, action: Array) -> None:
-        """Gives an action to the robot, to be in force from the next physics step on."""
+        """Applies an action to the robot, effective from the next physics step."""
 
     @abstractmethod
     def observe(self) -> dict[str, Array]:
@@ -61,7 +62,7 @@ class TaskWorld(ABC):
 
 
 class Task(ABC):
-    """What all worlds of an environment share."""
+    """Common part of all worlds of an environment."""
 
     control_interval: float = 0.1
     """Simulated time between two actions [s], rounded to physics steps."""
@@ -88,5 +89,6 @@ class Task(ABC):
         """The task in a new simulation of the scene."""
 
     def neutral_action(self, space: spaces.Box) -> Array | None:
-        """What is in force until an episode's first action: the middle of the space. None = what the scene says."""
+        """Action in effect until an episode's first action: the middle of the space. None = the controls of the
+        scene."""
         return ((space.low.astype(np.float64) + space.high.astype(np.float64)) / 2).astype(space.dtype)

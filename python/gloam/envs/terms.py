@@ -1,4 +1,4 @@
-"""One term of an observation: its settings, and the space of what comes out of it."""
+"""One term of an observation: its settings, and the space of its output."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ LagRange = tuple[int, int]
 
 @dataclass(frozen=True)
 class Term:
-    """A quantity as a policy sees it: raw value -> noise -> clip -> scale -> delay -> history.
+    """A quantity in an observation: raw value -> noise -> clip -> scale -> delay -> history.
 
     shape: of the raw value. low, high: limits of the raw value, if it has them. noise: added first. clip: limits
     after the noise, in the raw unit. scale: factor, a number or an array of `shape`. delay: control steps that the
@@ -60,11 +60,11 @@ class Term:
 
     @property
     def output_shape(self) -> tuple[int, ...]:
-        """Shape of what comes out, with the history as a first axis where it is longer than 1."""
+        """Shape of the output, with the history as the first axis if it is longer than 1."""
         return self.shape if self.history == 1 else (self.history, *self.shape)
 
     def space(self) -> spaces.Box:
-        """Limits of what comes out."""
+        """Limits of the output."""
         low, high = self.low, self.high
         if self.noise is not None:
             low, high = low + self.noise.low, high + self.noise.high

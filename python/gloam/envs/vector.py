@@ -21,7 +21,7 @@ from gloam.envs.worlds import Worlds
 class VectorEnv(gym.vector.VectorEnv[Observation, Array, Array]):
     """n worlds of a task that share one compiled World and step on all cores.
 
-    World i of reset(seed=s) is the Env of seed s + i, to the bit. Arrays that are returned are the caller's own.
+    World i of reset(seed=s) equals the Env of seed s + i, bit for bit. The caller owns the returned arrays.
     autoreset_mode: NEXT_STEP (the step after the last one resets), SAME_STEP (the last step does; the last
     observation is `info["final_obs"][i]`, its info `info["final_info"]`) or DISABLED (the caller resets, with
     `options={"reset_mask": mask}`). Others as of Env.
@@ -63,7 +63,7 @@ class VectorEnv(gym.vector.VectorEnv[Observation, Array, Array]):
 
     @property
     def sims(self) -> list[gloam.Simulation]:
-        """The simulations, by world. A reset with another seed makes another one. Errors: ClosedError."""
+        """The simulations, by world. A reset with another seed replaces one. Errors: ClosedError."""
         if not self._worlds.slots:
             raise gloam.ClosedError("the environment is closed")
         return [slot.sim for slot in self._worlds.slots]
@@ -79,7 +79,7 @@ class VectorEnv(gym.vector.VectorEnv[Observation, Array, Array]):
         seed: int | list[int | None] | None = None,
         options: dict[str, Any] | None = None,
     ) -> tuple[Observation, dict[str, Any]]:
-        """Begins an episode in all worlds, or in those of options["reset_mask"], (num_envs,) bool.
+        """Begins an episode in all worlds, or in the worlds of options["reset_mask"], (num_envs,) bool.
 
         seed: None, one number s for the worlds' seeds s, s + 1, …, or a list with one for each world (None: its
         random numbers go on). Observations of worlds that are not reset are their last ones. Errors: TypeError,
@@ -97,7 +97,8 @@ class VectorEnv(gym.vector.VectorEnv[Observation, Array, Array]):
         return self._copy(), infos
 
     def step(self, actions: Array) -> tuple[Observation, Array, Array, Array, dict[str, Any]]:
-        """Takes one control step in every world; actions: (num_envs, …), those of worlds that are reset do nothing.
+        """Takes one control step in every world; actions: (num_envs, …); actions of worlds that are reset have no
+        effect.
 
         Returns observations, rewards, terminated, truncated, each of num_envs, and infos as gymnasium has them.
         Errors: ValueError for another shape or a number that is not finite; UsageError before the first reset and,
@@ -136,7 +137,7 @@ class VectorEnv(gym.vector.VectorEnv[Observation, Array, Array]):
         return self._copy(), rewards, terminated, truncated, infos
 
     def render(self) -> tuple[Any, ...] | None:
-        """A picture of each world, (height, width, 3) uint8, in mode "rgb_array", else None."""
+        """An image of each world, (height, width, 3) uint8, in mode "rgb_array", else None."""
         if self.render_mode != "rgb_array":
             return None
         return tuple(self._worlds.render(world) for world in range(len(self.sims)))

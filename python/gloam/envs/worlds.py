@@ -49,9 +49,9 @@ class StepResult:
 
 
 class Worlds:
-    """Steps, resets and observes n worlds. Worlds are told by their numbers, arrays of int.
+    """Steps, resets and observes n worlds, selected by arrays of their numbers.
 
-    Errors: those of compiling the scene; ValueError for numbers that make no sense.
+    Errors: compile errors of the scene; ValueError for invalid numbers.
     """
 
     def __init__(self, task: Task, num_worlds: int, settings: EnvSettings) -> None:
@@ -87,7 +87,7 @@ class Worlds:
     def reset(
         self, worlds: Array, seeds: Sequence[int | None], options: Mapping[str, Any]
     ) -> tuple[Observation, list[dict[str, Any]]]:
-        """Begins an episode in these worlds. A seed restarts all random numbers of its world; None: they go on."""
+        """Begins an episode in these worlds. A seed restarts all random numbers of its world; None continues them."""
         for world, seed in zip(worlds, seeds, strict=True):
             self._seed(int(world), seed)
         self.pipeline.reset(worlds)
@@ -108,7 +108,7 @@ class Worlds:
         return StepResult(observation, rewards, terminated, [outcome.info for outcome in outcomes])
 
     def render(self, world: int) -> Array | None:
-        """Picture of one world by the settings' camera, (height, width, 3) uint8; None without a camera."""
+        """Image of one world from the settings' camera, (height, width, 3) uint8; None without a camera."""
         sim = self.slots[world].sim
         name = self.settings.render_camera or next(iter(sim.world.cameras), None)
         if name is None:
@@ -122,7 +122,7 @@ class Worlds:
         return Slot(sim, self.task.bind(sim), delayed, seed=seed)
 
     def _seed(self, world: int, seed: int | None) -> None:
-        """Makes the simulation anew where its seed is another one, and restarts the generators."""
+        """Creates a new simulation if its seed has changed, and restarts the generators."""
         slot = self.slots[world]
         if slot.has_failed or (seed is not None and (slot.seed != seed or self.settings.randomize)):
             new = self._new_slot(slot.seed if seed is None else seed)
@@ -152,7 +152,8 @@ class Worlds:
         return slot.last
 
     def _advance(self, slot: Slot, action: Array) -> tuple[dict[str, Array], Outcome]:
-        """One control step. Physics that leaves the finite numbers ends the episode, with the last good observation."""
+        """One control step. If physics produces a value that is not finite, the episode ends with the last valid
+        observation."""
         try:
             slot.bound.decide(action)
             slot.actions.advance(action, self.steps, slot.bound.apply, slot.sim.step)
