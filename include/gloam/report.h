@@ -21,7 +21,7 @@ struct ReportRequest {
 };
 struct ReportOutcome {
   size_t runs = 0;              ///< runs in the report
-  int pictures = 0;             ///< images in its strips
+  int pictures = 0;             ///< number of images in its strips
   uint64_t bytes = 0;           ///< size of the file
   std::vector<Error> left_out;  ///< folders, tables and videos that could not be read
 };

@@ -12,7 +12,7 @@ from .errors import UsageError
 
 
 def to_text(value: Any, where: str = "value") -> str:
-    """A value as it stands after "=" in a scene file. Raises TypeError: None, or what TOML has not."""
+    """A value as written after "=" in a scene file. Raises TypeError: None, or a type that TOML does not have."""
     if value is None:
         raise TypeError(f"{where}: None is no value; leave the option out instead")
     if isinstance(value, bool):
@@ -39,7 +39,7 @@ def to_text(value: Any, where: str = "value") -> str:
 
 
 def key_text(key: Any) -> str:
-    """A key, quoted where TOML asks for it."""
+    """A key, quoted if TOML requires it."""
     if not isinstance(key, str):
         raise TypeError(f"a key is a text, not {key!r}")
     bare = key and all(c.isascii() and (c.isalnum() or c in "-_") for c in key)
@@ -47,7 +47,7 @@ def key_text(key: Any) -> str:
 
 
 def from_text(text: str) -> Any:
-    """The value of TOML text; None of "", which is an option that is not given."""
+    """The value of TOML text; None for "", an option that is not given."""
     if not text:
         return None
     try:

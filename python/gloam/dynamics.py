@@ -21,7 +21,7 @@ _WIDTH = {"geom_friction": 3, "actuator_gain": 10, "actuator_bias": 10}  # numbe
 
 
 class Dynamics:
-    """Factors of what the files say, of a whole model or of one robot."""
+    """Factors of the values in the files, for a whole model or for one robot."""
 
     def __init__(self, sim: Simulation, root: int | None = None, actuators: Sequence[int] | None = None) -> None:
         self._sim = sim

@@ -20,7 +20,7 @@ _MOST_EMBEDDED = 64 << 20  # [bytes] of a video within a notebook
 
 
 def png(picture: ArrayLike) -> bytes:
-    """A picture as a PNG file.
+    """An image as a PNG file.
 
     picture: (H, W) or (H, W, 1 … 4), uint8 or uint16, rows from the top. Raises ValueError for other shapes and types.
     """
@@ -31,9 +31,9 @@ def png(picture: ArrayLike) -> bytes:
 
 
 def animated_png(pictures: Iterable[ArrayLike], rate: float = 10.0) -> bytes:
-    """Pictures of one size as an animated PNG that repeats for ever (PNG, third edition, W3C 2025, section 11.3.6).
+    """Images of one size as an animated PNG that repeats forever (PNG, third edition, W3C 2025, section 11.3.6).
 
-    pictures: at least one, as png() takes them; rate [Hz]: 0 < rate. Raises ValueError.
+    pictures: at least one, as for png(); rate [Hz]: 0 < rate. Raises ValueError.
     """
     if not 0 < rate < 65536:
         raise ValueError(f"rate: {rate} Hz is not above 0 and below 65536")
@@ -59,10 +59,10 @@ def animated_png(pictures: Iterable[ArrayLike], rate: float = 10.0) -> bytes:
 
 
 class Animation:
-    """Pictures that a notebook plays: Animation([frame.rgb for frame in frames], rate=10)."""
+    """An animation for a notebook: Animation([frame.rgb for frame in frames], rate=10)."""
 
     def __init__(self, pictures: Iterable[Any], rate: float = 10.0) -> None:
-        """pictures: arrays as png() takes them, or frames with an `rgb`; rate [Hz]. Raises ValueError."""
+        """pictures: arrays as for png(), or frames with an `rgb`; rate [Hz]. Raises ValueError."""
         self.data = animated_png([getattr(p, "rgb", p) for p in pictures], rate)
 
     def write(self, path: str | os.PathLike[str]) -> None:
@@ -80,7 +80,7 @@ class Video:
     """
 
     def __init__(self, path: str | os.PathLike[str], width: int | None = None) -> None:
-        """width [px]: as shown; None = the video's own. Raises OSError, ValueError for over 64 MiB."""
+        """width [px]: displayed width; None = the video's own. Raises OSError, ValueError for over 64 MiB."""
         self.path, self.width = Path(path), width
         size = self.path.stat().st_size
         if size > _MOST_EMBEDDED:

@@ -28,7 +28,7 @@ class OptionTable(dict[str, Any]):
 
 
 def frozen(value: Any) -> Any:
-    """The value with its lists and tables as those of options."""
+    """The value with read-only lists and tables."""
     if isinstance(value, dict):
         return OptionTable({key: frozen(inner) for key, inner in value.items()})
     if isinstance(value, list):

@@ -41,7 +41,8 @@ class Bar:
         self._last = -_INTERVAL
 
     def __call__(self, task: str, done: float, seconds: float = -1.0, left: float = -1.0) -> bool:
-        """Draws if it is time to. seconds < 0: since the bar was made; left < 0: from the share done. Returns True."""
+        """Draws if an update is due. seconds < 0: time since the bar was made; left < 0: estimate from the fraction
+        done. Returns True."""
         now = time.monotonic()
         if seconds < 0:
             seconds = now - self._start
@@ -58,7 +59,7 @@ class Bar:
         raise NotImplementedError
 
     def close(self) -> None:
-        """Takes the bar away."""
+        """Removes the bar."""
 
 
 class TerminalBar(Bar):

@@ -22,7 +22,7 @@ PathLike = str | os.PathLike[str]
 
 @dataclass(frozen=True)
 class Option:
-    """One option of a scene. `value` is None where it is not given; `low` and `high` are infinite where there is no limit."""
+    """One option of a scene. `value` is None if it is not given; `low` and `high` are infinite without a limit."""
 
     path: str
     value: Any
@@ -149,7 +149,7 @@ class Scene:
         return _unpickled, (type(self), self.to_toml(), os.fspath(self._scene.bare_model), os.fspath(self.file), os.getcwd(), root, strict, self.name)
 
     def __getitem__(self, path: str) -> Any:
-        """Value of an option, a copy; None where it is not given."""
+        """Value of an option, a copy; None if it is not given."""
         try:
             return frozen(_toml.from_text(self._scene.get(path)))
         except NotFoundError:

@@ -56,7 +56,7 @@ class SceneSource:
 
 @dataclass(frozen=True)
 class RolloutJob:
-    """One simulation by a seed: a function that steps it, or a policy that drives a robot for a time."""
+    """One simulation by a seed: a function that steps it, or a policy that controls a robot for a time."""
 
     scene: SceneSource
     drive: Any  # function(sim, seed, folder) -> mapping or None; else a Policy
@@ -92,8 +92,8 @@ class RolloutJob:
 
 
 def _plain(result: Mapping[str, Any]) -> dict[str, Any]:
-    """Results as JSON holds them: NumPy's numbers and arrays become numbers and lists. Raises UsageError: NaN, or no
-    such value."""
+    """Results as JSON holds them: NumPy's numbers and arrays become numbers and lists. Raises UsageError: NaN, or a
+    value that JSON cannot represent."""
 
     def convert(value: Any) -> Any:
         if hasattr(value, "tolist"):

@@ -124,7 +124,7 @@ class PolicyDriver:
         self.detach()
 
     def _before_step(self) -> None:
-        """One call for each step, on the thread that steps, before the step is taken."""
+        """Called before each step, on the thread that steps."""
         sim = self._sim()
         memory = sim.memory  # type: ignore[union-attr]
         if memory is not self._io.memory:  # a recompile

@@ -27,8 +27,8 @@ def _openvino() -> Any:
 class Network:
     """One input of (1, inputs) and one output of (1, outputs) that are used, both f32.
 
-    Raises ImportError: no openvino; IoError: no such file; InputError: it is no ONNX file, its tensors are too large, or
-    have no fixed size; UnsupportedError: it takes several inputs, or has loops.
+    Raises ImportError: no openvino; IoError: no such file; InputError: not an ONNX file, tensors that are too large
+    or have no fixed size; UnsupportedError: several inputs, or loops.
     """
 
     def __init__(self, path: Path) -> None:

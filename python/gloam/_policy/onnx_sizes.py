@@ -128,7 +128,7 @@ class _Model:
             self.external(name, external.get("location", ""))
 
     def external(self, name: str, location: str) -> None:
-        """Weights in a file of their own lie beside the network's, or below it."""
+        """Checks that external weights are in the network's folder, or below it."""
         parts = PurePosixPath(location)
         inside = location and not parts.is_absolute() and ".." not in parts.parts
         file = self.path.parent / location
@@ -154,7 +154,7 @@ class _Model:
 
     @staticmethod
     def shape(data: memoryview) -> Iterator[int]:
-        """Sizes that are fixed; one that is negative is open, as a name is."""
+        """Sizes of fixed dimensions; a negative or named size is open."""
         for number, dim in _fields(data):
             if number != 1 or isinstance(dim, int):
                 continue

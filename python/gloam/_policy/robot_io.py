@@ -53,9 +53,9 @@ def _model_names(spec: PolicySpec, robot: str) -> list[str]:
 class RobotIo:
     """Reads and controls one robot through the arrays of a simulation's memory, which it keeps.
 
-    Raises NotFoundError: a joint, a sensor or a joint's actuator is missing; UnsupportedError: joints that are no
-    hinges or slides, no floating base where a term needs it, actuators whose torque does not follow from their
-    control at once.
+    Raises NotFoundError: a joint, a sensor or a joint's actuator is missing; UnsupportedError: joints other than
+    hinges or slides, a missing floating base if a term needs it, actuators whose torque is not an immediate function
+    of their control.
     """
 
     def __init__(self, memory: Any, spec: PolicySpec, robot: str) -> None:

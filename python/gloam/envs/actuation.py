@@ -11,7 +11,7 @@ from gloam.envs.noise import Array
 
 
 class DelayedActions:
-    """The actions of one world that are on their way.
+    """Delayed actions of one world.
 
     delay: least and most [physics steps]; one of them is drawn for an episode.
     """
@@ -25,7 +25,7 @@ class DelayedActions:
         self._waiting: deque[tuple[int, Array]] = deque()
 
     def reset(self, rng: np.random.Generator) -> None:
-        """Forgets what is on its way, and draws the delay of the episode."""
+        """Discards delayed actions, and draws the delay of the episode."""
         self._waiting.clear()
         self._now = 0
         least, most = self._range

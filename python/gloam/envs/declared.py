@@ -92,7 +92,7 @@ class DeclaredTask(Task):
         return spaces.Box(low.astype(np.float32), high.astype(np.float32), dtype=np.float32)
 
     def terms(self, world: gloam.World) -> Sequence[Term]:
-        """Shapes are those of a simulation of the World when its first observation is made."""
+        """Shapes are determined by a simulation of the World at its first observation."""
         with new_simulation(world) as sim:
             bound = _DeclaredWorld(sim, self)
             bound.begin(np.random.default_rng(0), {})

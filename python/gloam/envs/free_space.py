@@ -38,8 +38,8 @@ class FreeSpace:
         """The largest connected free region of a World.
 
         ignore: bodies that are not obstacles (MuJoCo ids); radius, cell: [m]; heights: geoms entirely below or above
-        them are not obstacles [m]. In generated places only their floors count. Errors: UsageError if there are no
-        walls, or no room between them.
+        them are not obstacles [m]. In generated places only the floors are free space. Errors: UsageError if there
+        are no walls, or no room between them.
         """
         boxes, floors = _boxes(world, ignore, heights)
         corners = (floors if len(floors) > 0 else boxes).reshape(-1, 2)
@@ -156,7 +156,7 @@ def _boxes(world: gloam.World, ignore: Collection[int], heights: tuple[float, fl
 
 
 def _outline(corners: Array) -> Array:
-    """The four corners of a box seen from above: of its base where it stands upright, else of the box around it."""
+    """The four corners of a box seen from above: of its base if it is upright, else of its bounding box."""
     base, top = corners[:4, :2], corners[4:, :2]
     if np.allclose(base, top, atol=1e-6):
         return base

@@ -1,4 +1,4 @@
-"""Reach: the tool of a 6-joint arm goes to a point. Actions move the targets of the joints' servos.
+"""Reach: the tool of a 6-joint arm moves to a point. Actions move the targets of the joints' servos.
 
 The task is that of "Reach" in Plappert et al., "Multi-Goal Reinforcement Learning" (arXiv:1802.09464), with a dense
 reward.
@@ -55,7 +55,8 @@ class Reach(Task):
         return spaces.Box(-1.0, 1.0, (JOINTS,), np.float32)
 
     def terms(self, world: gloam.World) -> Sequence[Term]:
-        """In this order: joints [rad, rad/s], their targets, the tool in the world, the way from it to the goal [m]."""
+        """In this order: joints [rad, rad/s], their targets, the tool in the world, the vector from it to the goal
+        [m]."""
         return [
             Term("joint_position", (JOINTS,), clip=(-4, 4)),
             Term("joint_velocity", (JOINTS,), clip=(-20, 20), scale=0.1),
@@ -106,7 +107,7 @@ class _ReachWorld(TaskWorld):
         }
 
     def judge(self, action: Array) -> Outcome:
-        """Reward: less the distance [m] and a little of the action, 1 at the goal."""
+        """Reward: minus the distance [m] and a small penalty of the action; 1 at the goal."""
         distance = float(np.linalg.norm(self._goal - self._tool_position))
         is_near = distance < self._task.radius
         self._held = self._held + 1 if is_near else 0
@@ -116,7 +117,7 @@ class _ReachWorld(TaskWorld):
 
 
 def _drawn_goal(rng: np.random.Generator) -> Array:
-    """A point of the half shell before the arm, 0.15 m above the floor at least [m]."""
+    """A point of the half shell in front of the arm, at least 0.15 m above the floor [m]."""
     while True:
         point = rng.uniform(-SHELL[1], SHELL[1], 3)
         if SHELL[0] <= np.linalg.norm(point) <= SHELL[1] and point[0] > 0.1 and (point + SHOULDER)[2] > 0.15:

@@ -48,7 +48,7 @@ class _NamedVectorEnv(VectorEnv):
 
 
 class PointGoalEnv(_NamedEnv):
-    """gloam/PointGoal-v0; options: those of PointGoal and EnvSettings."""
+    """gloam/PointGoal-v0; options: as for PointGoal and EnvSettings."""
 
     _task = PointGoal
 
@@ -60,7 +60,7 @@ class PointGoalVectorEnv(_NamedVectorEnv):
 
 
 class QuadrupedVelocityEnv(_NamedEnv):
-    """gloam/QuadrupedVelocity-v0; options: those of QuadrupedVelocity and EnvSettings."""
+    """gloam/QuadrupedVelocity-v0; options: as for QuadrupedVelocity and EnvSettings."""
 
     _task = QuadrupedVelocity
 
@@ -72,7 +72,7 @@ class QuadrupedVelocityVectorEnv(_NamedVectorEnv):
 
 
 class ReachEnv(_NamedEnv):
-    """gloam/Reach-v0; options: those of Reach and EnvSettings."""
+    """gloam/Reach-v0; options: as for Reach and EnvSettings."""
 
     _task = Reach
 

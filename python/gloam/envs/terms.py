@@ -21,8 +21,8 @@ class Term:
 
     shape: of the raw value. low, high: limits of the raw value, if it has them. noise: added first. clip: limits
     after the noise, in the raw unit. scale: factor, a number or an array of `shape`. delay: control steps that the
-    term is late, or (least, most), drawn for each world at its reset. history: newest values that are given
-    together, oldest first; 1 = the newest alone. dtype: of the output; uint8 for pictures.
+    term is late, or (least, most), drawn for each world at its reset. history: newest values that are given together,
+    oldest first; 1 = only the newest. dtype: of the output; uint8 for images.
     """
 
     name: str
