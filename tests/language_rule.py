@@ -8,7 +8,7 @@ from pathlib import Path
 import house
 
 # May only fall: lower it when the count falls, and reword new text instead of raising it.
-MOST_PHRASES = 817
+MOST_PHRASES = 0
 
 
 class Language(unittest.TestCase):
