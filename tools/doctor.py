@@ -44,7 +44,7 @@ def missing_of(variable):
 
 def checks():
     system = os.environ.get("GLOAM_SYSTEM", platform.system())
-    yield check("operating system", "is tested here" in system, system, "Gloam is tested on Debian 12 and Debian 13", needed=False)
+    yield check("operating system", "is tested here" in system or "supported" in system, system, "Gloam is tested on Debian 12 and supports Debian 13", needed=False)
     flags = cpu_flags()
     yield check("processor", platform.machine() == "x86_64" and "sse4_2" in flags,
                 f"{platform.machine()}, {'AVX2' if 'avx2' in flags else 'no AVX2'}", "an x86-64 processor with SSE 4.2 is needed")
