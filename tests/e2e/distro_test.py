@@ -48,6 +48,7 @@ class Distributions(unittest.TestCase):
         release, tools, installed = place / "os-release", place / "tools", place / "installed"
         release.write_text(RELEASES[name])
         tools.mkdir()
+        (tools / "help.sh").write_bytes((ROOT / "tools" / "help.sh").read_bytes())
         for program in ("bash", "id", "env", "readlink", "dirname", "mkdir", "flock", "sha256sum", "cut", "grep", "cat", "rm", "tail", "find", "sh"):
             (tools / program).symlink_to(subprocess.check_output(["sh", "-c", f"command -v {program}"], text=True).strip())
         if has_dpkg:
