@@ -24,9 +24,7 @@ constexpr int kLooks = 10;                     // after which keep_waiting is ca
 
 // Worlds are compiled on the threads of many callers, each of which has a heap of its own: glibc
 // keeps their free pages, some MB a recompile, unless it is asked to return them.
-void return_free_memory() {
-  malloc_trim(0);
-}
+void return_free_memory() { malloc_trim(0); }
 
 double wall_seconds() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
