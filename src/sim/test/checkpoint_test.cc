@@ -1,6 +1,8 @@
 // Checkpoints: whoever goes on from one has the bits of the run it was taken of, by a copy and by
 // stepping again.
 
+#include "gloam/world.h"
+#include "scene/test/temp_folder.h"
 #include "sim/state/state_layout.h"
 #include "test_world.h"
 
@@ -108,8 +110,15 @@ TEST(Checkpoint, OfACheckpointsBranchIsWholeToo) {
   EXPECT_EQ(fresh->latest().hash(), hash);
 }
 
+std::shared_ptr<const CompiledWorld> world_of_file(const std::filesystem::path& model) {
+  return World::compile(load_scene(model).value()).value().compiled();
+}
+
+// The run keeps the source of the World that it has left, and the checkpoint compiles it again.
 TEST(Checkpoint, LeadsThroughARecompile) {
-  const auto world = world_from_mjcf(kRichModel), other = world_from_mjcf(kRichModel);
+  const TempFolder folder;
+  const auto file = folder.write("rich.xml", kRichModel);
+  const auto world = world_of_file(file), other = world_of_file(file);
   auto sim = driven(world, std::make_unique<RandomController>());
   disturb(*sim, 10);
   ASSERT_TRUE(sim->step(50).ok());
