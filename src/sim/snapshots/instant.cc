@@ -8,10 +8,12 @@
 
 #include "base/memory.h"
 #include "scene/files/mujoco_guard.h"
+#include "sim/agents/body_contact.h"
 #include "sim/commands/live_fields.h"
 #include "sim/commands/model_fields.h"
 #include "sim/effects/wind/air_drag.h"
 #include "sim/effects/wind/wind.h"
+#include "sim/loop/step_halves.h"
 #include "sim/loop/step_schedule.h"
 #include "sim/loop/stepper.h"
 #include "sim/snapshots/snapshot.h"
@@ -30,8 +32,9 @@ struct Instant::Solved {
   ModelPtr own_model;  // once live fields have changed
   uint64_t live_serial = 0;
   DataPtr data, scratch;
-  std::optional<WindOnBodies> wind;  // wind of steps as long as wind_timestep, if it blows
-  std::optional<AirDrag> drag;       // none: MuJoCo's own
+  std::optional<WindOnBodies> wind;    // wind of steps as long as wind_timestep, if it blows
+  std::optional<AirDrag> drag;         // none: MuJoCo's own
+  std::optional<BodyContacts> people;  // where steps replace MuJoCo's contacts with people
   double wind_timestep = 0;
   std::vector<double> others;  // forces from outside but the drag [N, N m], (nv)
   bool good = false;           // the last forward pass was
@@ -40,7 +43,7 @@ struct Instant::Solved {
   Status follow_live_fields(const SnapshotData& in);
   void make_wind(const SnapshotData& in);
   void blow(const SnapshotData& in);
-  void add_drag();
+  void add_contacts_and_drag();
 
   template <class Kind>
   Status check(Handle<Kind> handle, mjtSize count) const {
@@ -66,7 +69,10 @@ void Instant::Solved::begin(const SnapshotData& in) {
   live_serial = 0;
   wind.reset();
   drag.reset();
+  people.reset();
   model = *in.world->model;
+  if (has_halves(model)) people.emplace(*in.world, model);
+  if (people && !people->any()) people.reset();
   if (in.world->wind.blows() && !has_own_drag(model)) drag.emplace(model);
   others.resize(static_cast<size_t>(model.nv));
   data = make_data(*in.world->model);
@@ -108,11 +114,13 @@ void Instant::Solved::blow(const SnapshotData& in) {
   wind->blow(in.step, data->qpos, &model.opt);
 }
 
-// Accelerations again, with the drag of the wind among the forces from outside.
-void Instant::Solved::add_drag() {
-  if (!drag) return;
+// Solves for accelerations and contact forces again, with the springs of people in place of
+// MuJoCo's contacts and with the drag of the wind among the applied forces, as Stepper does.
+void Instant::Solved::add_contacts_and_drag() {
+  if (!drag && !people) return;
   std::copy_n(data->qfrc_applied, model.nv, others.begin());
-  drag->push(model, *data);
+  if (people) people->soften(model, data.get());
+  if (drag) drag->push(model, *data);
   mj_forwardSkip(&model, data.get(), mjSTAGE_VEL, 0);
   std::copy(others.begin(), others.end(), data->qfrc_applied);
 }
@@ -139,7 +147,7 @@ Status Instant::solve(const Snapshot& snapshot) {
     mj_setState(model, data, in.state.data(), mjSTATE_INTEGRATION);
     s.blow(in);
     mj_forward(model, data);
-    s.add_drag();
+    s.add_contacts_and_drag();
     // Quantities that a forward pass computes only if a sensor asks for them.
     mj_energyPos(model, data);
     mj_energyVel(model, data);
