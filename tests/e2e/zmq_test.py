@@ -155,7 +155,7 @@ class Zmq(unittest.TestCase):
         self.assertEqual(controls[-1].ros_msg.data[0], 0.02 * 19)
 
     def test_changes_of_the_scene_keep_no_world_in_memory(self):
-        """Each World holds a height field of 8 MB; 200 changes in full, else 30."""
+        """Each World holds a height field of 8 MB; 200 recompiles in full, else 90."""
         (self.folder / "place.xml").write_text('<mujoco><asset><hfield name="hill" nrow="1000" ncol="2000" size="5 5 .1 .1"/></asset>'
                                                '<worldbody><geom type="hfield" hfield="hill"/></worldbody></mujoco>')
         server = self.serve("--paused")
@@ -168,9 +168,12 @@ class Zmq(unittest.TestCase):
             for i in range(4):
                 change(i)
             before = resident(server.pid)
-            for i in range(66 if os.environ.get("GLOAM_TEST_FULL") else 10):
+            after = []
+            for i in range(66 if os.environ.get("GLOAM_TEST_FULL") else 30):
                 change(i)
-            self.assertLess(resident(server.pid) - before, 60, "of three Worlds of 8 MB a change")
+                after.append(resident(server.pid))
+            # Some Worlds are still in use while the next is compiled: the least of ten readings tells of a leak.
+            self.assertLess(min(after[-10:]) - before, 60, "of three Worlds of 8 MB a change")
 
     def test_live_fields_are_set_in_double_precision(self):
         self.serve("--paused")
