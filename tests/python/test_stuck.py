@@ -9,6 +9,7 @@ from scenes import BALL
 LOAD = """
 import threading, time, signal, os
 import gloam
+signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell in the background ignores it
 sim = gloam.load("ball.xml")
 never = threading.Event()
 def closed(close):
