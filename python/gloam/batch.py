@@ -86,7 +86,10 @@ def _trajectory(source: Any) -> Any:
         return _core.Trajectory.make(source[0], source[1])
     file, _, topic = str(source.file if isinstance(source, Log) else os.fspath(source)).partition(":/")
     if Path(file).suffix != ".mcap":
-        return _core.Trajectory.read(Path(source))
+        read = _core.Trajectory.read(Path(source))
+        for note in read.notes:
+            warnings.warn(note, stacklevel=3)
+        return read
     log = source if isinstance(source, Log) else Log(file)
     return _trajectory((log, f"/{topic}" if topic else _only_pose_topic(log)))
 

@@ -19,15 +19,7 @@ std::shared_ptr<Run> create(const World& world, uint64_t seed, double timestep,
   options.seed = seed;
   options.timestep = timestep;
   options.speed = speed;
-  if (pace == "lockstep") {
-    options.pace = Pace::kLockstep;
-  } else if (pace == "fast") {
-    options.pace = Pace::kFast;
-  } else if (pace == "realtime") {
-    options.pace = Pace::kRealTime;
-  } else {
-    raise("UsageError", "there is no pace '" + pace + "'", "one of: lockstep, fast, realtime");
-  }
+  options.pace = take(pace_named(pace));
   Run::Shared shared{std::move(make_data)};
   if (!shared.make_data.is_none()) options.make_data = data_maker(shared.make_data, shared.mirrors);
   options.keep_waiting = [signal = shared.signal] {

@@ -126,7 +126,7 @@ class LiveSimulation final : public Simulation {
       : seed_(options.seed),
         metering_(metering),
         keep_waiting_(options.keep_waiting),
-        meters_(options.seed, options.pace != Pace::kRealTime) {}
+        meters_(options.pace != Pace::kRealTime) {}
   void restart_speed_clock();
   bool has_to_stop(int look);
   Status stopped_by_the_user();

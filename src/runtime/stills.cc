@@ -123,7 +123,7 @@ Result<std::vector<CameraFrame>> render_stills(const World& world, double time,
     // Draws are keyed by the step: pictures of two times have different noise.
     sensor->set_draws_by_index(true);
     const auto frame =
-        sensor->capture(*shared->renderer, shared->turns, exposure, poses[previous[i]], 0);
+        sensor->capture(*shared->renderer, shared->turns, exposure, poses[previous[i]], steps);
     if (frame == nullptr) return Error{ErrorKind::kInterrupted, "interrupted"};
     if (requests[i].render.error) {
       tell_what_was_reached(requests[i], *frame, sensor->stats());

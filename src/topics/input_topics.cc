@@ -9,6 +9,7 @@
 #include "ros/messages/sensor_msgs.h"
 #include "ros/messages/trajectory_msgs.h"
 #include "ros/trajectory_check.h"
+#include "topics/input_echoes.h"
 #include "topics/model_frames.h"
 #include "topics/ros_values.h"
 #include "topics/topic_table.h"

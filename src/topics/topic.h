@@ -84,6 +84,7 @@ struct Topic {
   std::vector<std::string> streams = {};  ///< camera, LiDAR or sensors; empty of others
   std::string channel = {};               ///< of CameraRequest::outputs
   TopicCode code;
+  InputEcho echo = {};  ///< of an input; empty = a log has its messages as they came in
   /// How often an instant's encoder has to see the simulation, whatever the rate of its messages
   /// [Hz]: what it tells depends on all instants since it was opened. 0 = as often as messages.
   Rational sampled = {0, 1};

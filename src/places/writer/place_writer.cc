@@ -9,6 +9,7 @@
 #include "base/check.h"
 #include "places/writer/height_field_spec.h"
 #include "places/writer/place_looks.h"
+#include "places/writer/spec_edit.h"
 #include "places/writer/spec_geom.h"
 
 namespace gloam {
@@ -120,8 +121,9 @@ class PlaceWriter {
       texture->width = image.width;
       texture->height = image.height;
       texture->nchannel = image.channels;
-      mjs_setBuffer(texture->data, image.texels.data(), static_cast<int>(image.texels.size()));
-      mjs_setInStringVec(material->textures, mjTEXROLE_RGB, texture_name.c_str());
+      edit(mjs_setBuffer, texture->data, image.texels.data(),
+           static_cast<int>(image.texels.size()));
+      edit(mjs_setInStringVec, material->textures, mjTEXROLE_RGB, texture_name.c_str());
     }
     const double rgba[4] = {look.color.x, look.color.y, look.color.z, look.opacity};
     for (int i = 0; i < 4; ++i) material->rgba[i] = static_cast<float>(rgba[i]);
@@ -157,13 +159,13 @@ class PlaceWriter {
     edit(mjs_setFloat, mesh->usernormal, &from.normals[0].x, 3 * count);
     const std::vector<int> faces(from.indices.begin(), from.indices.end());
     const auto corners = static_cast<int>(faces.size());
-    mjs_setInt(mesh->userface, faces.data(), corners);
-    mjs_setInt(mesh->userfacenormal, faces.data(), corners);
+    edit(mjs_setInt, mesh->userface, faces.data(), corners);
+    edit(mjs_setInt, mesh->userfacenormal, faces.data(), corners);
     if (from.uvs.empty()) return written;
     std::vector<float> uvs;
     for (const Vec2f uv : from.uvs) uvs.insert(uvs.end(), {uv.x, 1 - uv.y});
-    mjs_setFloat(mesh->usertexcoord, uvs.data(), static_cast<int>(uvs.size()));
-    mjs_setInt(mesh->userfacetexcoord, faces.data(), corners);
+    edit(mjs_setFloat, mesh->usertexcoord, uvs.data(), static_cast<int>(uvs.size()));
+    edit(mjs_setInt, mesh->userfacetexcoord, faces.data(), corners);
     return written;
   }
 
@@ -231,8 +233,8 @@ class PlaceWriter {
 
   void show(mjsGeom* geom, const std::string& mesh, const std::string& material) const {
     geom->type = mjGEOM_MESH;
-    mjs_setString(geom->meshname, mesh.c_str());
-    mjs_setString(geom->material, looks_.at(material).c_str());
+    edit(mjs_setString, geom->meshname, mesh.c_str());
+    edit(mjs_setString, geom->material, looks_.at(material).c_str());
     geom->contype = geom->conaffinity = 0;
     geom->group = kVisualGroup;
     geom->mass = 0;

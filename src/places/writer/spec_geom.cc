@@ -6,11 +6,13 @@
 #include <cmath>
 #include <memory>
 
+#include "places/writer/spec_edit.h"
+
 namespace gloam {
 
 std::string set_free_name(mjsElement* element, const std::string& text) {
   std::string name = text;
-  for (int n = 2; mjs_setName(element, name.c_str()) != 0; ++n)
+  for (int n = 2; edit(mjs_setName, element, name.c_str()) != 0; ++n)
     name = fmt::format("{}_{}", text, n);
   return name;
 }

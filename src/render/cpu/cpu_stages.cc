@@ -40,7 +40,6 @@ RenderStats CpuStages::render(Job& job) {
   RenderWatch watch(settings.progress, count, *job.slices);
   job.watch = &watch;
   const AdaptivePlan plan = adaptive ? look(job) : AdaptivePlan();
-  RenderWatch watch(settings.progress, count, *job.slices);
   for_tiles(job, count, [&](int64_t i) {
     if (watch.stopped()) return;
     const int64_t tile = settings.progress ? scattered(i, count) : i;

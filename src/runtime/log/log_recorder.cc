@@ -142,24 +142,18 @@ bool LogRecorder::write_history(const Snapshot& now) {
   if (record.first_step == 0) return false;
   auto command = record.commands.begin();
   for (size_t i = 0; i < record.chapters.size() && record.chapters[i].from <= now.step(); ++i) {
-    const auto world = record.chapters[i].compiled();
+    const RunRecord::Chapter& chapter = record.chapters[i];
+    const auto world = chapter.compiled();
     if (!world.ok()) {
-      log_warning("the log's run cannot be stepped again: {}", world.error().to_string());
+      log_warning("the log's run cannot be replayed: {}", world.error().to_string());
       return false;
     }
-    RunText text = describe_run(**world, record.seed, record.timestep);
-    text.run = run;
-    text.step = record.chapters[i].from;
-    text.has_history = true;
-    const std::string json = to_json(text);
-    write(kWorldTopic, now.time(), run, bytes_of(json));
+    keep(worlds_->write(**world, {run, chapter.from, true}, log_time(now.time(), run)));
     const bool is_last = i + 1 == record.chapters.size();
     const int64_t end =
         is_last ? record.first_step : std::min(record.first_step, record.chapters[i + 1].from);
-    for (; command != record.commands.end() && command->step < end; ++command) {
-      const std::string line = command_text({run, *command}, **world);
-      write(kCommandTopic, now.time(), run, bytes_of(line));
-    }
+    for (; command != record.commands.end() && command->step < end; ++command)
+      write_text(kCommandTopic, now.time(), run, command_text({run, *command}, **world));
   }
   for (const StepInput& input : record.inputs) write_input(input, now.time(), run);
   world_ = now.data().world;

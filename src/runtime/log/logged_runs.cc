@@ -13,6 +13,7 @@
 #include "runtime/log/logged_text.h"
 #include "runtime/log/run_text.h"
 #include "runtime/log/state_order.h"
+#include "runtime/log/topic_reader.h"
 #include "sim/commands/command_check.h"
 
 namespace gloam {

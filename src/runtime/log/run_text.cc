@@ -114,6 +114,10 @@ Result<RunText> parse_run_text(std::string_view json_text) {
     for (const Json& file : json.at("files"))
       text.files.push_back(
           {file.at("path").get<std::string>(), from_hex(file.at("hash").get<std::string>())});
+    text.has_root = json.value("has_root", false);
+    for (const Json& package : json.value("packages", Json::array()))
+      text.packages.push_back(
+          {package.at("name").get<std::string>(), package.at("folder").get<std::string>()});
     const bool is_timestep = text.timestep == 0 || (text.timestep >= 1e-9 && text.timestep < 1e3);
     if (text.run < 0 || text.step < 0 || !is_timestep)
       return Error{ErrorKind::kInput,

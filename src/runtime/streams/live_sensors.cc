@@ -27,23 +27,6 @@ std::string stream_name(const std::vector<std::string>& sensors) {
   return fmt::format("{} sensors", sensors.size());
 }
 
-// Steps at which a sensor has a sample and the reader uses it. Where the two hardly ever meet, some
-// of those without a sample are among them: nothing is delivered then.
-std::function<int64_t(int64_t)> both_due(std::function<int64_t(int64_t)> sampled,
-                                         std::function<int64_t(int64_t)> used) {
-  constexpr int kTries = 32;
-  if (!used) return sampled;
-  return [sampled = std::move(sampled), used = std::move(used)](int64_t step) {
-    int64_t next = sampled(step);
-    for (int i = 0; i < kTries; ++i) {
-      const int64_t wanted = used(next);
-      if (wanted == next) break;
-      next = sampled(wanted);
-    }
-    return next;
-  };
-}
-
 }  // namespace
 
 Result<std::unique_ptr<LiveSensors>> LiveSensors::open(const StreamContext& context,

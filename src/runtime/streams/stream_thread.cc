@@ -29,6 +29,7 @@ void StreamThread::run() {
 Status StreamThread::take_all() {
   try {
     while (const SnapshotWindow window = job_.next()) {
+      if (is_abandoned()) break;
       GLOAM_TRY_STATUS(take_timed(window));
       const std::lock_guard lock(mutex_);
       ++taken_;

@@ -76,7 +76,8 @@ class FieldChecker {
     if (rule.required && text.empty()) return fail(key, "is empty");
     if (rule.identifier && (text.empty() || text.find('/') != std::string::npos))
       return fail(key, fmt::format("must be a name without '/', not '{}'", text));
-    if (!rule.choices.empty() && !text.empty() &&  // empty: not given, as sim.pace
+    if (rule.may_be_empty && text.empty()) return;
+    if (!rule.choices.empty() &&
         std::find(rule.choices.begin(), rule.choices.end(), text) == rule.choices.end()) {
       const std::vector<std::string> choices(rule.choices.begin(), rule.choices.end());
       fail(key, fmt::format("cannot be '{}'; {}", text, suggest_name(text, choices)));

@@ -12,6 +12,7 @@
 #include "sim/loop/scene_schedule.h"
 
 namespace gloam {
+
 Result<std::unique_ptr<Simulator>> Simulator::create(std::shared_ptr<const CompiledWorld> world,
                                                      SimulatorOptions options) {
   const double dt = options.timestep.value_or(world->model->opt.timestep);

@@ -7,6 +7,12 @@
 #include "sim/loop/simulator.h"
 
 namespace gloam {
+namespace {
+
+// By the wall clock.
+bool is_paced(Pace pace) { return pace == Pace::kRealTime || pace == Pace::kSensors; }
+
+}  // namespace
 
 Error Simulator::no_call_from_a_step() {
   return {ErrorKind::kUsage,
@@ -63,7 +69,7 @@ void Simulator::run_thread() {
     } else if (loop_.stepper().failed() || !wants_step()) {
       report_idle();
       wait(ticket);
-    } else if (pace_ != Pace::kRealTime || pacer_.ready(loop_.stepper().step_count())) {
+    } else if (!is_paced(pace_) || pacer_.ready(loop_.stepper().step_count())) {
       take_step();
     }
   }
@@ -184,7 +190,7 @@ std::optional<Status> Simulator::begin_steps(int64_t n) {
     pacer_.restart();
   };
   Turn turn(*this, std::try_to_lock);
-  if (!turn.is_mine() || n > kShortRun || pace_ == Pace::kRealTime) {
+  if (!turn.is_mine() || n > kShortRun || is_paced(pace_)) {
     turn.end();
     call(begin);
     return {};
@@ -211,7 +217,7 @@ bool Simulator::take_steps_here() {
     const bool published = loop_.publish_due();
     if (called_.load(std::memory_order_acquire)) {
       answer_calls();
-    } else if (!published || quit_ || remaining_ == kForever || pace_ == Pace::kRealTime) {
+    } else if (!published || quit_ || remaining_ == kForever || is_paced(pace_)) {
       return false;
     } else if (!loop_.stepper().failed() && wants_step()) {
       take_step();

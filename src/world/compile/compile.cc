@@ -164,9 +164,8 @@ void expand_outputs(Scene* scene) {
     if (camera.outputs) camera.outputs = recorded_outputs(*camera.outputs);
 }
 
-Result<std::shared_ptr<CompiledWorld>> compile_scene(const Scene& written,
-                                                     const std::string& keyframe,
-                                                     const ProgressCallback& callback) {
+Result<World> compile_scene(const Scene& written, const std::string& keyframe,
+                            const ProgressCallback& callback) {
   install_mujoco_handler();
   GLOAM_TRY_STATUS(validate_scene(written));
   Scene scene = written;

@@ -35,7 +35,7 @@ class ObjectWriter {
         return Error{ErrorKind::kInput,
                      fmt::format("{}: the environment has a {} of that name", title(o_), word),
                      o_.loc, "rename the object"};
-    mjsBody* body = mjs_addBody(mjs_findBody(spec_, "world"), nullptr);
+    mjsBody* body = edit(mjs_addBody, mjs_findBody(spec_, "world"), nullptr);
     name(body->element, o_.name);
     write_pose(o_.X_WO, body->pos, body->quat);
     const double mass = o_.mass.value_or(o_.density * converted.mass.volume);
@@ -102,7 +102,7 @@ class ObjectWriter {
     edit(mjs_setFloat, mesh->uservert, &hull.positions[0].x,
          static_cast<int>(3 * hull.positions.size()));
     const std::vector<int> faces(hull.indices.begin(), hull.indices.end());
-    mjs_setInt(mesh->userface, faces.data(), static_cast<int>(faces.size()));
+    edit(mjs_setInt, mesh->userface, faces.data(), static_cast<int>(faces.size()));
     return written;
   }
 

@@ -40,6 +40,8 @@ struct Job {
   /// exact channels too.
   bool centered = false;
   Film* film = nullptr;
+  RenderWatch* watch = nullptr;  ///< asked between samples whether to go on; null = to the end
+  bool may_continue() const { return watch == nullptr || watch->may_continue(); }
   RenderSlices* slices = nullptr;
 };
 

@@ -9,6 +9,7 @@
 #include "gloam/command.h"
 #include "scene/files/mujoco_guard.h"
 #include "sim/commands/live_fields.h"
+#include "world/model_memory.h"
 #include "world/shapes/visual_pose.h"
 
 namespace gloam {
