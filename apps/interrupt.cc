@@ -17,7 +17,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// What the running command needs after the first signal.
+/// Work left for the running command after the first signal.
 enum class Phase { kNothing, kStopping, kFinishing };
 
 constexpr std::chrono::milliseconds kTimeToStop{1500};

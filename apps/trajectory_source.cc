@@ -22,8 +22,7 @@ Result<Trajectory> load_trajectory(const std::string& source) {
   const size_t split = source.find(":/");
   const std::string file = source.substr(0, split);
   if (!is_log(file)) {
-    // "a.bag:/odom" is a topic of what is taken for a log; a file may also have a colon in its
-    // name.
+    // "a.bag:/odom" names a topic of a log, but a file name may contain a colon as well.
     std::error_code code;
     return read_trajectory_file(std::filesystem::exists(source, code) ? source : file);
   }

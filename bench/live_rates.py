@@ -66,7 +66,7 @@ port = 0
 
 
 def topics_of(sim, large):
-    """{name: (topic, wanted rate)} of what the scene has."""
+    """{name: (topic, wanted rate)} of the sensors in the scene."""
     found = {}
     for topic in sim.topics():
         name = topic["name"]

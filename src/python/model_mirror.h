@@ -18,7 +18,7 @@ namespace gloam::python {
 
 class ModelMirror {
  public:
-  /// Of a model that physics steps with; its meshes, textures and trees of bounds are shared.
+  /// Mirrors the model of a simulation; its meshes, textures and bounding volumes are shared.
   explicit ModelMirror(std::shared_ptr<const mjModel_> physics);
   ~ModelMirror();
 

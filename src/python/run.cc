@@ -138,7 +138,7 @@ void Run::give_written() {
   has_written_.store(true, std::memory_order_release);
 }
 
-// What was written into the model: Commands for the next step.
+// Turns writes into the model into Commands for the next step.
 void Run::give_written_model() {
   if (!model_is_watched_ || mirror_ == nullptr) return;
   const auto commands = mirror_->take_written(std::exchange(model_is_given_, false));

@@ -23,7 +23,7 @@ struct Written {
 
 class Run {
  public:
-  /// What a simulation is made with, and shares with its Run.
+  /// Objects that a simulation is created with and shares with its Run.
   struct Shared {
     nb::object make_data;  ///< or none
     std::shared_ptr<ModelMirrors> mirrors = std::make_shared<ModelMirrors>();

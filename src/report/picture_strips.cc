@@ -74,8 +74,8 @@ class CameraPictures {
 
   std::optional<VideoReader> video_;
   fs::path folder_;
-  // Of each picture. Numbers of frames have gaps where frames were dropped, and begin late where a
-  // run goes on from a log.
+  // Frame numbers and times of the pictures. Numbers have gaps where frames were dropped, and start
+  // late in a run that resumes a log.
   std::vector<int64_t> frames_;
   std::vector<double> times_;  // [s]
 };

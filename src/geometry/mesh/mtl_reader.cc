@@ -187,7 +187,7 @@ class MtlParser {
     return std::ranges::find(kOptions, option) != std::end(kOptions);
   }
 
-  // Of a picture that stands for one number.
+  // Selects the channel of an image that provides a single value.
   void choose_channel(std::string_view word, TextureRef* texture) const {
     if (texture->channel == TextureChannel::kColor) return;
     if (word == "r") texture->channel = TextureChannel::kRed;

@@ -50,7 +50,7 @@ inline std::string_view trim(std::string_view text) {
   return text;
 }
 
-/// Of ASCII letters; others stay.
+/// Lower case of ASCII letters; other characters stay.
 inline std::string lower_case(std::string_view word) {
   std::string out(word);
   for (char& c : out)

@@ -56,7 +56,7 @@ std::vector<fs::path> run_files(const CompiledWorld& world) {
   if (!world.written.bare_model.empty()) list.add(world.written.bare_model);
   for (const Dependency& file : world.files)
     if (file.exists) list.add(file.path);
-  // What was drawn of [[randomize]]s stands in `scene` alone, what was left out in `written` alone.
+  // Only `scene` has the values drawn by [[randomize]], only `written` has the omitted elements.
   for (const Scene* scene : {&world.written, &world.scene}) {
     Scene copy = *scene;
     visit_scene_paths(&copy, [&list](fs::path* path) { list.add_with_parts(*path); });
