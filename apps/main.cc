@@ -33,8 +33,8 @@ Status check_environment() {
 int run_program(int argc, char** argv) {
   CLI::App app{
       "Gloam: a robotics simulator. Physics is exactly MuJoCo, light is path-traced.\n"
-      "In the source tree also: ./gloam setup | test | bench | mitsuba | gallery | pack | python | "
-      "wheel | doctor"};
+      "In the source tree also: ./gloam setup | test | bench | mitsuba | gallery | docs | pack | "
+      "python | wheel | doctor"};
   app.name("gloam");
   app.require_subcommand(1);
   app.fallthrough();
@@ -48,7 +48,7 @@ int run_program(int argc, char** argv) {
   bool verbose = false;
   app.add_flag("--json", globals.json, "Print data as JSON on stdout");
   app.add_flag("-q,--quiet", globals.quiet, "No progress, only warnings and errors");
-  app.add_flag("-v,--verbose", verbose, "Tell more");
+  app.add_flag("-v,--verbose", verbose, "Print more detail");
 
   Action action;
   for (const auto add : kCommands) add(app, globals, action);

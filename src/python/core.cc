@@ -171,6 +171,17 @@ void FirstError::rethrow() {
   if (error != nullptr) throw std::move(*error);
 }
 
+int FirstError::traverse(visitproc visit, void* arg) const {
+  if (error_ != nullptr) Py_VISIT(error_->value().ptr());
+  return 0;
+}
+
+void FirstError::clear() {
+  std::unique_ptr<nb::python_error> error;
+  const std::lock_guard lock(mutex_);
+  error.swap(error_);
+}
+
 std::vector<double> doubles(nb::handle numbers) {
   nb::ndarray<const double, nb::c_contig, nb::device::cpu> array;
   if (nb::try_cast(numbers, array, true)) return {array.data(), array.data() + array.size()};

@@ -76,6 +76,10 @@ class FirstError {
  public:
   void keep(nb::python_error&& error);
   void rethrow();
+  /// For the collector of cycles, which holds the interpreter: the traceback of an exception refers
+  /// to the objects of its functions.
+  int traverse(visitproc visit, void* arg) const;
+  void clear();
 
  private:
   std::mutex mutex_;
@@ -172,19 +176,18 @@ nb::object new_array(std::vector<T> values, std::initializer_list<size_t> shape)
   return nb::cast(nb::ndarray<nb::numpy, T>(kept->data(), shape.size(), shape.begin(), owner));
 }
 
-/// Slots by which Python's collector finds, and breaks, cycles through an object that C++ keeps:
-/// a callback that refers to its stream. `kKept` is a member function that returns it.
-template <class T, auto kKept>
+/// Slots by which Python's collector finds, and breaks, cycles through objects that C++ keeps: a
+/// callback that refers to its stream, an exception of a callback whose traceback refers to it. T
+/// has traverse(), as FirstError has, and clear_kept().
+template <class T>
 PyType_Slot* kept_slots() {
   static PyType_Slot slots[] = {
       {Py_tp_traverse, reinterpret_cast<void*>(+[](PyObject* self, visitproc visit, void* arg) {
          Py_VISIT(Py_TYPE(self));
-         if (!nb::inst_ready(self)) return 0;
-         Py_VISIT((nb::inst_ptr<T>(self)->*kKept)().ptr());
-         return 0;
+         return nb::inst_ready(self) ? nb::inst_ptr<T>(self)->traverse(visit, arg) : 0;
        })},
       {Py_tp_clear, reinterpret_cast<void*>(+[](PyObject* self) {
-         (nb::inst_ptr<T>(self)->*kKept)().reset();
+         nb::inst_ptr<T>(self)->clear_kept();
          return 0;
        })},
       {0, nullptr}};

@@ -58,9 +58,9 @@ void Inbox::put(Waiting message) {
     return;
   }
   const nb::gil_scoped_acquire acquired;
+  const CallbackScope inside;             // outlives `callback`, whose end may end the simulation
   const nb::object callback = callback_;  // kept for as long as it runs
   if (is_closing_ || !callback.is_valid() || callback.is_none()) return;
-  const CallbackScope inside;
   callback_thread_ = std::this_thread::get_id();
   began_ = std::chrono::steady_clock::now();
   is_in_callback_ = true;

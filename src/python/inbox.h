@@ -53,7 +53,14 @@ class Inbox {
   void clear();
   int64_t lost() const { return lost_; }
   /// For the collector of cycles.
-  nb::object& callback() { return callback_; }
+  int traverse(visitproc visit, void* arg) const {
+    Py_VISIT(callback_.ptr());
+    return error_.traverse(visit, arg);
+  }
+  void clear_kept() {
+    callback_.reset();
+    error_.clear();
+  }
   /// Raises what the callback has raised, once.
   void rethrow() { error_.rethrow(); }
 

@@ -191,9 +191,9 @@ void Run::call_hook(const mjModel_* model, mjData_* data) {
   }
   if (!has_hook_.load(std::memory_order_acquire)) return;
   const nb::gil_scoped_acquire acquired;
+  const CallbackScope inside;     // outlives `hook`, whose end may end the simulation
   const nb::object hook = hook_;  // kept for as long as it runs
   if (!has_hook_ || !hook.is_valid() || hook.is_none()) return;
-  const CallbackScope inside;
   is_in_hook_ = true;
   try {
     hook();

@@ -68,7 +68,14 @@ class Run {
   /// Told of by whoever posts a Command, which may wait for the next step.
   void note_command() { has_commands_ = true; }
   /// For the collector of cycles.
-  nb::object& hook() { return hook_; }
+  int traverse(visitproc visit, void* arg) const {
+    Py_VISIT(hook_.ptr());
+    return hook_error_.traverse(visit, arg);
+  }
+  void clear_kept() {
+    hook_.reset();
+    hook_error_.clear();
+  }
 
  private:
   std::unique_lock<std::timed_mutex> turn();

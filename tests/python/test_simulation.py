@@ -1,7 +1,9 @@
 """Simulations from Python: stepping, live arrays, commands, instants to go back to."""
 from __future__ import annotations
 
+import faulthandler
 import gc
+import threading
 import time
 import weakref
 from pathlib import Path
@@ -219,4 +221,28 @@ def test_a_simulation_that_nobody_holds_is_freed(sim: gloam.Simulation) -> None:
     while gone() is not None and time.monotonic() < end:  # the callback of the last sample may still run
         gc.collect()
         time.sleep(0.01)
-    assert gone() is None
+    if gone() is not None:
+        faulthandler.dump_traceback(all_threads=True)
+    assert gone() is None, [type(holder) for holder in gc.get_referrers(gone())]
+
+
+def test_an_exception_of_a_callback_does_not_keep_a_simulation() -> None:
+    made = gloam.load(QUADRUPED)
+    entered, stepped = threading.Event(), threading.Event()
+
+    def callback(sample: object, made: gloam.Simulation = made) -> None:
+        entered.set()
+        stepped.wait(10)  # no later call raises the exception
+        made.joints["no such joint"]  # the traceback refers to `made`
+
+    made.sensors[made.world.sensors[0]].open(required=False, callback=callback)
+    made.step(2)
+    assert entered.wait(10)
+    gone = weakref.ref(made)
+    del made, callback
+    stepped.set()
+    end = time.monotonic() + 10
+    while gone() is not None and time.monotonic() < end:
+        gc.collect()
+        time.sleep(0.01)
+    assert gone() is None, [type(holder) for holder in gc.get_referrers(gone())]

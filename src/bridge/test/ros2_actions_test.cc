@@ -205,8 +205,9 @@ TEST_F(Ros2Actions, TrajectoriesFailByTheirTolerances) {
   const auto client = follower(1);
   ca::FollowJointTrajectory_Goal goal = bend(1.2, 0.05);
   goal.path_tolerance = {{"elbow", 0.01, 0, 0}};
-  ASSERT_TRUE(send(*client, 1, goal));
+  // While it runs: time passes between the acceptance of a goal and its first look at the joints.
   ASSERT_TRUE(op().play().ok());
+  ASSERT_TRUE(send(*client, 1, goal));
   EXPECT_EQ(outcome(*client, 1).result.error_code, Fjt::PATH_TOLERANCE_VIOLATED);
   goal = bend(-0.6, 0.2);
   goal.goal_tolerance = {{"elbow", 1e-9, 0, 0}};

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "bridge/ros2/services/simulation_values.h"
 #include "bridge/ros2/services/snapshot_inbox.h"
@@ -84,7 +85,6 @@ TrajectoryRun::TrajectoryRun(Simulation& simulation, std::string robot, int inte
 
 GoalEnd TrajectoryRun::run(GoalContext& context) {
   Snapshot now = simulation_.latest();
-  start_ = std::max(now.time(), stamp_);
   if (stamp_ > 0 && stamp_ + way_.end() < now.time())
     return aborted(JointResult::OLD_HEADER_TIMESTAMP, "the trajectory ended before it came");
   if (const Status begun = begin(now); !begun.ok())
@@ -95,9 +95,10 @@ GoalEnd TrajectoryRun::run(GoalContext& context) {
                                  [&inbox](const Snapshot& snapshot) { inbox.put(snapshot); });
   if (!stream.ok()) return aborted(JointResult::INVALID_GOAL, stream.error().to_string());
   const InboxCloser closer{inbox};
+  bool has_started = false;  // at the first Snapshot of the stream: from then on none is missed
   for (double before = now.time();;) {
     if (context.is_cancelled()) return cancelled(now);
-    if (const Status posted = post_ahead(now); !posted.ok())
+    if (const Status posted = has_started ? post_ahead(now) : Status(); !posted.ok())
       return aborted(JointResult::INVALID_GOAL, posted.error().to_string());
     const Snapshot next = inbox.take();
     if (!simulation_.status().ok())
@@ -110,13 +111,13 @@ GoalEnd TrajectoryRun::run(GoalContext& context) {
         return aborted(JointResult::INVALID_JOINTS, found.error().to_string());
     }
     now = next;
+    if (!std::exchange(has_started, true)) start(now);
     if (const std::optional<GoalEnd> end = look(now, context)) return *end;
   }
 }
 
 Status TrajectoryRun::begin(const Snapshot& now) {
   GLOAM_TRY_STATUS(find(now));
-  for (const Joint joint : joints_) from_.push_back(now[joint].position());
   GLOAM_TRY(const Robot robot, now.world().find_robot(robot_));
   GLOAM_TRY(lease_, simulation_.claim(robot));
   timestep_ = 1 / simulation_.step_rate().value();
@@ -124,6 +125,12 @@ Status TrajectoryRun::begin(const Snapshot& now) {
   if (rate.value() > kWatchRate) rate_ = {static_cast<int64_t>(kWatchRate), 1};
   return {};
 }
+
+void TrajectoryRun::start(const Snapshot& now) {
+  start_ = std::max(now.time(), stamp_);
+  for (const Joint joint : joints_) from_.push_back(now[joint].position());
+}
+
 Status TrajectoryRun::find(const Snapshot& now) {
   GLOAM_TRY(joints_, find_joints(now, robot_, names_));
   return {};

@@ -37,6 +37,8 @@ class TrajectoryRun {
                                               const std::vector<std::string>& joints);
 
   Status begin(const Snapshot& now);
+  // The trajectory starts here, from the present positions.
+  void start(const Snapshot& now);
   Status find(const Snapshot& now);
   // The goals of the next moment that were not posted yet.
   Status post_ahead(const Snapshot& now);
