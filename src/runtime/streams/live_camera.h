@@ -25,6 +25,10 @@ class LiveCamera final : public CameraStream {
                                                   const CameraRequest& request,
                                                   FrameCallback on_frame,
                                                   const ExposureMeters& meters);
+  /// A picture that nothing waits for is given up: it may take many seconds.
+  ~LiveCamera() override {
+    if (!request_.required) thread_.abandon();
+  }
   void set_pose(const Pose& X_WC) override;
   Pose pose() const override;
   void refresh() override;

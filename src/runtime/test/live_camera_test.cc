@@ -86,6 +86,22 @@ TEST(LiveCamera, FrameKIsTakenAtTheFirstStepAtOrAfterKOverRate) {
   }
 }
 
+// A bridge whose client has gone must not wait for a picture of many seconds.
+TEST(LiveCamera, AViewThatClosesGivesItsPictureUp) {
+  const TempFolder folder;
+  auto simulation = simulate(flight(folder));
+  SlowFrames frames;
+  CameraRequest request = tiny("a/fixed", {50, 1});
+  request.required = false;
+  request.outputs = {"rgb"};
+  request.render = {.tier = "path", .spp = 65536};  // takes many seconds
+  auto stream = open(*simulation, request, frames);
+  ASSERT_TRUE(simulation->step(1).ok());
+  std::this_thread::sleep_for(std::chrono::milliseconds(200));  // it has begun
+  stream.reset();
+  EXPECT_TRUE(frames.all().empty());
+}
+
 // MuJoCo's own xpos lags one step behind the state; a frame's poses and depths must not.
 TEST(LiveCamera, PoseDepthAndStampAreOfOneInstant) {
   const TempFolder folder;
