@@ -235,8 +235,7 @@ void bind_simulation(nb::module_& m) {
       .def_prop_ro("hash", &Checkpoint::hash)
       .def_prop_ro("is_copied", &Checkpoint::is_copied);
   nb::class_<ControlLease>(m, "Lease").def_prop_ro("robot", &ControlLease::robot);
-  nb::class_<Run> run(m, "Run", "A running simulation.",
-                      nb::type_slots(kept_slots<Run>()));
+  nb::class_<Run> run(m, "Run", "A running simulation.", nb::type_slots(kept_slots<Run>()));
   run.def_static("create", &create, nb::arg("world"), nb::arg("seed"), nb::arg("timestep"),
                  nb::arg("pace"), nb::arg("speed"), nb::arg("make_data").none() = nb::none())
       .def("close", &Run::close)

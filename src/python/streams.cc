@@ -146,8 +146,7 @@ CameraRequest camera_request(const nb::dict& options) {
 
 void bind_streams(nb::module_& m) {
   bind_messages(m);
-  nb::class_<Inbox>(m, "Stream", "An open stream of messages.",
-                    nb::type_slots(kept_slots<Inbox>()))
+  nb::class_<Inbox>(m, "Stream", "An open stream of messages.", nb::type_slots(kept_slots<Inbox>()))
       .def("close", &Inbox::close)
       .def_prop_ro("is_open", &Inbox::is_open)
       .def_prop_ro("dropped", [](Inbox& inbox) { return inbox.stream().dropped() + inbox.lost(); })
