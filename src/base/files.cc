@@ -6,7 +6,6 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <cctype>
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
@@ -16,6 +15,7 @@
 #include <vector>
 
 #include "base/memory.h"
+#include "base/text.h"
 
 namespace gloam {
 namespace fs = std::filesystem;
@@ -62,11 +62,7 @@ Result<Container> read_bytes(const fs::path& path, uint64_t max_size) {
 
 }  // namespace
 
-std::string lower_extension(const fs::path& path) {
-  std::string extension = path.extension().string();
-  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return extension;
-}
+std::string lower_extension(const fs::path& path) { return lower_case(path.extension().string()); }
 
 Result<std::vector<uint8_t>> read_file(const fs::path& path, uint64_t max_size) {
   return read_bytes<std::vector<uint8_t>>(path, max_size);

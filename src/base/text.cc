@@ -56,6 +56,13 @@ std::string suggest_name(std::string_view word, std::span<const std::string> can
   return fmt::format("one of: {}", fmt::join(candidates, ", "));
 }
 
+std::string lower_case(std::string_view text) {
+  std::string lower(text);
+  for (char& c : lower)
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  return lower;
+}
+
 bool fits_pattern(std::string_view pattern, std::string_view name) {
   // The last star may take one letter more whenever what follows it does not fit.
   size_t p = 0, n = 0, star = std::string_view::npos, taken = 0;

@@ -13,6 +13,9 @@ namespace gloam {
 /// third of its length + 1).
 std::string nearest_name(std::string_view word, std::span<const std::string> candidates);
 
+/// Lower case of ASCII letters; other characters stay.
+std::string lower_case(std::string_view text);
+
 /// True if `name` is `pattern` with any text in the place of each *.
 bool fits_pattern(std::string_view pattern, std::string_view name);
 

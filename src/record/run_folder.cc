@@ -3,11 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <nlohmann/json.hpp>
 
 #include "base/files.h"
 #include "base/nesting.h"
+#include "base/text.h"
 
 namespace gloam {
 namespace fs = std::filesystem;
@@ -15,12 +15,6 @@ namespace {
 
 Error folder_error(const fs::path& folder, ErrorKind kind, std::string message, std::string hint) {
   return {kind, std::move(message), {folder.string(), 0, 0}, std::move(hint)};
-}
-
-std::string in_lower_case(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return text;
 }
 
 /// Removes what an earlier recording says it wrote. Its summary is a file like any other: names
@@ -90,18 +84,18 @@ std::string safe_file_name(const std::string& text) {
 }
 
 FileNames::FileNames(std::initializer_list<const char*> taken) {
-  for (const char* name : taken) taken_.insert(in_lower_case(name));
+  for (const char* name : taken) taken_.insert(lower_case(name));
 }
 
 std::string FileNames::take(const std::string& text, const std::vector<std::string>& suffixes) {
   const std::string safe = safe_file_name(text);
   std::string name = safe;
   const auto is_taken = [&](const std::string& suffix) {
-    return taken_.contains(in_lower_case(name + suffix));
+    return taken_.contains(lower_case(name + suffix));
   };
   for (int i = 2; std::any_of(suffixes.begin(), suffixes.end(), is_taken); ++i)
     name = fmt::format("{}_{}", safe, i);
-  for (const std::string& suffix : suffixes) taken_.insert(in_lower_case(name + suffix));
+  for (const std::string& suffix : suffixes) taken_.insert(lower_case(name + suffix));
   return name;
 }
 

@@ -15,6 +15,7 @@
 
 #include "base/path_readings.h"
 #include "base/plain_text.h"
+#include "base/text.h"
 #include "geometry/mesh/text_lines.h"
 
 namespace gloam {

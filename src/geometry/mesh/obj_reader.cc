@@ -11,6 +11,7 @@
 
 #include "base/parallel.h"
 #include "base/path_readings.h"
+#include "base/text.h"
 #include "geometry/mesh/mtl_reader.h"
 #include "geometry/mesh/text_lines.h"
 #include "geometry/mesh/triangulate.h"

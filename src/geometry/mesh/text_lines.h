@@ -50,14 +50,6 @@ inline std::string_view trim(std::string_view text) {
   return text;
 }
 
-/// Lower case of ASCII letters; other characters stay.
-inline std::string lower_case(std::string_view word) {
-  std::string out(word);
-  for (char& c : out)
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  return out;
-}
-
 /// Takes the next word off `line`; empty at its end.
 inline std::string_view take_word(std::string_view* line) {
   size_t begin = 0;

@@ -4,9 +4,10 @@
 #include <mujoco/mjxmacro.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cstring>
 #include <string_view>
+
+#include "base/text.h"
 
 namespace gloam {
 namespace {
@@ -36,12 +37,6 @@ std::string text_of(std::string_view, const mjtNum* values, int count) {
   std::string text;
   for (int i = 0; i < count; ++i) text += fmt::format("{}{:.6g}", i == 0 ? "" : " ", values[i]);
   return text;
-}
-
-std::string lower(std::string_view text) {
-  std::string out;
-  for (const char c : text) out += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return out;
 }
 
 class SettingsComparison {
@@ -93,7 +88,7 @@ class SettingsComparison {
     for (int i = 0; i < flags.count; ++i) {
       const int bit = 1 << i;
       if ((own & bit) == 0 || (level & bit) != 0) continue;
-      const std::string name = lower(flags.names[i]);
+      const std::string name = lower_case(flags.names[i]);
       dropped_.push_back({fmt::format("flag {} {}, the level has {}", name, flags.own, flags.level),
                           "flag", name});
     }

@@ -4,7 +4,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cstring>
 #include <map>
 #include <mutex>
@@ -12,6 +11,7 @@
 #include "base/files.h"
 #include "base/hash.h"
 #include "base/log.h"
+#include "base/text.h"
 #include "geometry/image/png_writer.h"
 #include "places/generators.h"
 #include "places/writer/spec_edit.h"
@@ -52,13 +52,6 @@ class ExactNumbers {
   std::lock_guard<std::mutex> lock_;
   int before_;
 };
-
-// File systems of Windows and macOS take "A" and "a" for one name.
-std::string lower_case(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return text;
-}
 
 // Copies the files of the level's assets and lets the spec name the copies.
 class AssetWriter {
@@ -202,6 +195,7 @@ class AssetWriter {
     const uint64_t hash = hash_bytes(bytes.data(), bytes.size());
     std::string name = stem + extension;
     for (int number = 2;; ++number) {
+      // File systems of Windows and macOS take "A" and "a" for one name.
       const auto [taken, is_new] = written_.emplace(lower_case(name), hash);
       if (is_new) break;
       if (taken->second == hash) return fmt::format("{}/{}", kAssetFolder, name);
