@@ -52,7 +52,7 @@ double DeclaredMetric::sample(const MetricInstant& instant) {
   double value = expression_.evaluate(inputs_);
   if (!std::isfinite(value)) {
     if (missing_++ == 0)
-      log_warning("metric '{}' is {} at t = {} s: its cell is empty, and reductions leave it out",
+      log_warning("metric '{}' is {} at t = {} s: its cell stays empty, and reductions skip it",
                   name_, std::isnan(value) ? "not a number" : "infinite", instant.time());
     value = NAN;
   }

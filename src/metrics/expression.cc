@@ -92,8 +92,8 @@ double Expression::evaluate(std::span<const double> inputs) {
 }
 
 std::string place_in_expression(const SourceLoc& loc, std::string_view text) {
-  if (text.find('\n') == std::string_view::npos) return fmt::format("in column {}", loc.column);
-  return fmt::format("in line {}, column {}", loc.line, loc.column);
+  if (text.find('\n') == std::string_view::npos) return fmt::format("column {}", loc.column);
+  return fmt::format("line {}, column {}", loc.line, loc.column);
 }
 
 }  // namespace gloam

@@ -73,12 +73,13 @@ Result<ExpressionToken> ExpressionLexer::next() {
   if (token.text.empty()) {
     for (const auto& [sign, instead] : kForeignSigns) {
       if (!rest.starts_with(sign)) continue;
-      return Error{ErrorKind::kInput, fmt::format("there is no '{}'", sign), token.loc,
-                   fmt::format("write '{}'", instead)};
+      return Error{ErrorKind::kInput, fmt::format("unknown operator '{}'", sign), token.loc,
+                   fmt::format("use '{}'", instead)};
     }
     const size_t bytes = std::max<size_t>(1, utf8_length(rest));
     return Error{ErrorKind::kInput,
-                 fmt::format("'{}' is not understood", as_utf8(rest.substr(0, bytes))), token.loc};
+                 fmt::format("unexpected character '{}'", as_utf8(rest.substr(0, bytes))),
+                 token.loc};
   }
   take(token.text.size());
   return token;
@@ -102,7 +103,7 @@ Result<ExpressionToken> ExpressionLexer::number(ExpressionToken token) {
 Result<ExpressionToken> ExpressionLexer::quoted(ExpressionToken token) {
   const size_t end = text_.find(text_[at_], at_ + 1);
   if (end == std::string_view::npos)
-    return Error{ErrorKind::kInput, "a quote does not end", token.loc};
+    return Error{ErrorKind::kInput, "unterminated string", token.loc};
   token.kind = Kind::kText;
   token.text = text_.substr(at_ + 1, end - at_ - 1);
   take(end + 1 - at_);

@@ -30,9 +30,9 @@ Result<int> ExpressionParser::function(const ExpressionToken& word) {
   std::vector<std::string> known = heads;
   for (const ExpressionFunction& function : kExpressionFunctions) known.emplace_back(function.name);
   const std::string nearest = nearest_name(word.text, known);
-  return refuse_call(
-      word.loc, fmt::format("there is no function '{}'", word.text),
-      nearest.empty() ? "docs/metrics.md lists them" : fmt::format("did you mean '{}'?", nearest));
+  return refuse_call(word.loc, fmt::format("unknown function '{}'", word.text),
+                     nearest.empty() ? "see docs/metrics.md for all functions"
+                                     : fmt::format("did you mean '{}'?", nearest));
 }
 
 Result<int> ExpressionParser::arguments(const ExpressionFunction& function,
@@ -51,7 +51,8 @@ Result<int> ExpressionParser::arguments(const ExpressionFunction& function,
     const bool takes_any = function.kind == FunctionKind::kIf && count > 1;
     if (!takes_any && width != (takes_vectors ? 3 : 1))
       return refuse_call(loc, fmt::format("'{}' takes {}", function.name,
-                                          takes_vectors ? "a vector here" : "a number here"));
+                                          takes_vectors ? "a vector as this argument"
+                                                        : "a number as this argument"));
     if (function.kind == FunctionKind::kFold && count > 1) emit_call(function.call2, 1);
     if (!at(",") || count == function.most) break;
     GLOAM_TRY_STATUS(advance());
@@ -95,18 +96,18 @@ Result<int> ExpressionParser::finish_function(const ExpressionFunction& function
       return 1;
     case FunctionKind::kIf:
       if (widths[1] != widths[2])
-        return refuse_call(loc, "one of both values is a number, the other a vector");
+        return refuse_call(loc, "one value is a number, the other a vector");
       emit({.op = Op::kSelect, .width = widths[1]}, -widths[1] - 1);
       return widths[1];
   }
-  return refuse_call(loc, "an unknown kind of function");
+  return refuse_call(loc, "unknown kind of function");
 }
 
 Result<int> ExpressionParser::index() {
   GLOAM_TRY_STATUS(advance());
   const double number = token_.number;
   if (token_.kind != Kind::kNumber || number > kLargestIndex || number != std::floor(number))
-    return refuse_call(token_.loc, "an index is a whole number from 0");
+    return refuse_call(token_.loc, "an index must be a whole number from 0");
   GLOAM_TRY_STATUS(advance());
   GLOAM_TRY_STATUS(expect("]"));
   return static_cast<int>(number);
@@ -122,7 +123,7 @@ Result<NameStep> ExpressionParser::name_step(const ExpressionToken& word) {
     GLOAM_TRY_STATUS(advance());
     while (!at(")")) {
       if (token_.kind != Kind::kText)
-        return refuse_call(token_.loc, fmt::format("'{}' takes names in quotes", word.text));
+        return refuse_call(token_.loc, fmt::format("'{}' takes quoted names", word.text));
       step.arguments.emplace_back(token_.text);
       GLOAM_TRY_STATUS(advance());
       if (!at(")")) GLOAM_TRY_STATUS(expect(","));

@@ -22,8 +22,8 @@ Error refuse(const SourceLoc& loc, std::string message, std::string hint = {}) {
 
 Result<Expression> Expression::parse(std::string_view text, QuantityNames& names) {
   if (text.size() > kLongest)
-    return refuse({"", 1, 1},
-                  fmt::format("it has {} characters, more than {}", text.size(), kLongest));
+    return refuse({"", 1, 1}, fmt::format("the expression has {} characters; the limit is {}",
+                                          text.size(), kLongest));
   return ExpressionParser(text, names).parse();
 }
 
@@ -49,24 +49,25 @@ bool ExpressionParser::at(std::string_view sign_or_word) const {
 Status ExpressionParser::expect(std::string_view sign) {
   if (at(sign)) return advance();
   Error error = unexpected();
-  error.hint = fmt::format("'{}' is missing", sign);
+  error.hint = fmt::format("expected '{}'", sign);
   return error;
 }
 
 Error ExpressionParser::unexpected() const {
-  if (token_.kind == Kind::kEnd) return refuse(token_.loc, "it ends too early");
-  return refuse(token_.loc, fmt::format("'{}' does not belong there", as_utf8(token_.text)));
+  if (token_.kind == Kind::kEnd) return refuse(token_.loc, "unexpected end of the expression");
+  return refuse(token_.loc, fmt::format("unexpected '{}'", as_utf8(token_.text)));
 }
 
 Status ExpressionParser::want_number(int width, const SourceLoc& loc, std::string_view what) const {
   if (width == 1) return {};
-  return refuse(loc, fmt::format("{} is a number, not a vector", what),
-                "take norm(…) of it, or its .x, .y or .z");
+  return refuse(loc, fmt::format("{} must be a number, not a vector", what),
+                "use norm(…), or a component .x, .y or .z");
 }
 
 Status ExpressionParser::deeper() {
   if (++depth_ <= Expression::kDeepest) return {};
-  return refuse(token_.loc, fmt::format("it is nested more than {} deep", Expression::kDeepest));
+  return refuse(token_.loc,
+                fmt::format("the expression is nested more than {} deep", Expression::kDeepest));
 }
 
 void ExpressionParser::emit(const Instruction& instruction, int change) {
@@ -95,7 +96,7 @@ Result<int> ExpressionParser::choice() {
     GLOAM_TRY(width, choice());
     GLOAM_TRY_STATUS(expect(":"));
     GLOAM_TRY(const int other, choice());
-    if (width != other) return refuse(values, "one of both values is a number, the other a vector");
+    if (width != other) return refuse(values, "one value is a number, the other a vector");
     emit({.op = Op::kSelect, .width = width}, -width - 1);
   }
   --depth_;
@@ -107,11 +108,11 @@ Result<int> ExpressionParser::chain(Width (ExpressionParser::*part)(), std::stri
   const SourceLoc loc = token_.loc;
   GLOAM_TRY(int width, (this->*part)());
   while (at(word)) {
-    GLOAM_TRY_STATUS(want_number(width, loc, fmt::format("what stands before '{}'", word)));
+    GLOAM_TRY_STATUS(want_number(width, loc, fmt::format("the left operand of '{}'", word)));
     GLOAM_TRY_STATUS(advance());
     const SourceLoc right = token_.loc;
     GLOAM_TRY(width, (this->*part)());
-    GLOAM_TRY_STATUS(want_number(width, right, fmt::format("what stands after '{}'", word)));
+    GLOAM_TRY_STATUS(want_number(width, right, fmt::format("the right operand of '{}'", word)));
     emit_call(call, 1);
   }
   return width;
@@ -130,7 +131,7 @@ Result<int> ExpressionParser::negation() {
   GLOAM_TRY_STATUS(advance());
   const SourceLoc loc = token_.loc;
   GLOAM_TRY(const int width, negation());
-  GLOAM_TRY_STATUS(want_number(width, loc, "what stands after 'not'"));
+  GLOAM_TRY_STATUS(want_number(width, loc, "the operand of 'not'"));
   emit_call(expression::is_untrue, 1);
   --depth_;
   return 1;
@@ -146,14 +147,14 @@ Result<int> ExpressionParser::comparison() {
   GLOAM_TRY(int width, sum());
   const expression::Comparison* comparison = find();
   if (comparison == nullptr) return width;
-  GLOAM_TRY_STATUS(want_number(width, left, "what is compared"));
+  GLOAM_TRY_STATUS(want_number(width, left, "a compared value"));
   GLOAM_TRY_STATUS(advance());
   const SourceLoc right = token_.loc;
   GLOAM_TRY(width, sum());
-  GLOAM_TRY_STATUS(want_number(width, right, "what is compared"));
+  GLOAM_TRY_STATUS(want_number(width, right, "a compared value"));
   emit_call(comparison->call, 1);
   if (find() != nullptr)
-    return refuse(token_.loc, "two comparisons in a row", "write 'a < b and b < c'");
+    return refuse(token_.loc, "comparisons cannot be chained", "write 'a < b and b < c'");
   return 1;
 }
 
@@ -165,7 +166,7 @@ Result<int> ExpressionParser::sum() {
     GLOAM_TRY_STATUS(advance());
     GLOAM_TRY(const int right, product());
     if (right != width)
-      return refuse(loc, fmt::format("a number and a vector have no '{}'",
+      return refuse(loc, fmt::format("'{}' cannot combine a number and a vector",
                                      call == expression::add ? '+' : '-'));
     emit_call(call, width);
   }
@@ -189,9 +190,9 @@ Result<int> ExpressionParser::multiply(int left, int right, bool divides, const 
     emit_call(divides ? expression::divide : expression::multiply_numbers, 1);
     return 1;
   }
-  if (divides && right == 3) return refuse(loc, "nothing is divided by a vector");
+  if (divides && right == 3) return refuse(loc, "cannot divide by a vector");
   if (left == 3 && right == 3)
-    return refuse(loc, "two vectors have no '*'", "take dot(a, b) or cross(a, b)");
+    return refuse(loc, "'*' cannot combine two vectors", "use dot(a, b) or cross(a, b)");
   emit({.op = left == 1 ? Op::kScaleLeft : divides ? Op::kDivide : Op::kScale}, -1);
   return 3;
 }
@@ -211,12 +212,12 @@ Result<int> ExpressionParser::power() {
   const SourceLoc loc = token_.loc;
   GLOAM_TRY(const int width, element());
   if (!at("^")) return width;
-  GLOAM_TRY_STATUS(want_number(width, loc, "what has a power"));
+  GLOAM_TRY_STATUS(want_number(width, loc, "the base of a power"));
   GLOAM_TRY_STATUS(deeper());
   GLOAM_TRY_STATUS(advance());
   const SourceLoc right = token_.loc;
   GLOAM_TRY(const int exponent, sign());
-  GLOAM_TRY_STATUS(want_number(exponent, right, "a power"));
+  GLOAM_TRY_STATUS(want_number(exponent, right, "the exponent of a power"));
   emit_call([](double a, double b) { return std::pow(a, b); }, 1);
   --depth_;
   return 1;

@@ -81,10 +81,11 @@ Status Metrics::add_declared(const CompiledWorld& world,
   for (const MetricOptions& options : world.scene.metrics) {
     const double most = world.scene.record.metrics_rate.value();
     if (options.rate && options.rate->value() > most)
-      return Error{ErrorKind::kInput,
-                   fmt::format("metric '{}' is evaluated {:g} times a second, metrics {:g} times",
-                               options.name, options.rate->value(), most),
-                   options.loc, "raise 'metrics_rate' of [record]"};
+      return Error{
+          ErrorKind::kInput,
+          fmt::format("metric '{}' has a rate of {:g} Hz, but metrics are evaluated at {:g} Hz",
+                      options.name, options.rate->value(), most),
+          options.loc, "increase 'metrics_rate' of [record]"};
     std::vector<int> robots = {-1};
     if (!options.robots.empty()) robots = robots_like(world, options.robots);
     if (robots.empty())
@@ -93,8 +94,9 @@ Status Metrics::add_declared(const CompiledWorld& world,
     for (const int robot : robots) {
       GLOAM_TRY_STATUS(add_declared_of(options, world, builtin, robot));
       if (!taken.insert(columns_.back()).second)
-        return Error{ErrorKind::kInput, fmt::format("there are two metrics '{}'", columns_.back()),
-                     options.loc, "rename one of them"};
+        return Error{ErrorKind::kInput,
+                     fmt::format("there are two metrics named '{}'", columns_.back()), options.loc,
+                     "rename one of them"};
     }
   }
   return {};
@@ -146,7 +148,8 @@ const std::vector<double>& Metrics::sample(const Snapshot& snapshot) {
     const Status solved = instant_.solve(snapshot);
     if (!solved.ok()) {
       if (!told_failure_)
-        log_warning("metrics lack t = {} s: {}", snapshot.time(), solved.error().to_string());
+        log_warning("metrics at t = {} s are missing: {}", snapshot.time(),
+                    solved.error().to_string());
       told_failure_ = true;
       return row_;
     }

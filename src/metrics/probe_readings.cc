@@ -33,7 +33,7 @@ void ProbeReadings::open(const Snapshot& snapshot) {
 
 void ProbeReadings::tell(const Entry& entry, const Error& error) {
   if (!has_told_)
-    log_warning("metrics lack probe '{}': {}",
+    log_warning("metrics of probe '{}' are missing: {}",
                 instant_->world().probes[static_cast<size_t>(entry.row)].options.name,
                 error.to_string());
   has_told_ = true;

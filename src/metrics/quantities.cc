@@ -66,9 +66,9 @@ Result<QuantitySlot> Quantities::find_scene_number(Steps name) {
   if (field != nullptr) return place({.width = field->width, .read = field->read}, name.subspan(1));
   const std::vector<std::string> known = words();
   if (std::ranges::find(known, name[0].word) != known.end())
-    return Error{ErrorKind::kInput, fmt::format("'{}' of what?", name[0].word), name[0].loc,
+    return Error{ErrorKind::kInput, fmt::format("'{}' needs a name", name[0].word), name[0].loc,
                  fmt::format("write {}(\"NAME\")", name[0].word)};
-  return refuse_name(name[0], fmt::format("there is no quantity '{}'", name[0].word), name[0].word,
+  return refuse_name(name[0], fmt::format("unknown quantity '{}'", name[0].word), name[0].word,
                      known);
 }
 
@@ -86,10 +86,10 @@ Result<QuantitySlot> Quantities::find_robot(Steps name) {
     robot = static_cast<int>(found - known.begin());
   }
   if (robot < 0)
-    return Error{ErrorKind::kInput, "the metric is no robot's", first.loc,
-                 "give it 'robots', or write robot(\"NAME\")"};
+    return Error{ErrorKind::kInput, "the metric has no robot", first.loc,
+                 "set 'robots', or write robot(\"NAME\")"};
   if (name.size() < 2)
-    return Error{ErrorKind::kInput, "'robot' is no number", first.loc,
+    return Error{ErrorKind::kInput, "'robot' is not a number", first.loc,
                  "write robot.position, robot.speed …"};
   const Steps rest = name.subspan(1);
   if (rest[0].is_call) return find_element(rest, world_.robots[static_cast<size_t>(robot)].prefix);
@@ -121,7 +121,8 @@ Result<QuantitySlot> Quantities::find_element(Steps name, const std::string& pre
   const bool is_sensor = first.word == "sensor";
   const auto kind = std::ranges::find(element_kinds(), first.word, &ElementKind::word);
   if (kind == element_kinds().end() && !is_sensor)
-    return refuse_name(first, fmt::format("there is no '{}(…)'", first.word), first.word, words());
+    return refuse_name(first, fmt::format("unknown quantity '{}(…)'", first.word), first.word,
+                       words());
   if (first.arguments.size() != 1)
     return refuse_name(first, fmt::format("'{}' takes one name in quotes", first.word));
   const mjModel& m = *world_.model;
@@ -140,8 +141,8 @@ Result<QuantitySlot> Quantities::find_element(Steps name, const std::string& pre
   }
   if (is_sensor) return find_sensor(name, id);
   if (name.size() < 2 || first.index >= 0)
-    return Error{ErrorKind::kInput, fmt::format("which number of {} '{}'?", first.word, wanted),
-                 first.loc, fmt::format("write .{} behind it", kind->fields.front().name)};
+    return Error{ErrorKind::kInput, fmt::format("{} '{}' needs a field", first.word, wanted),
+                 first.loc, fmt::format("append .{}", kind->fields.front().name)};
   const ElementField* field = find_field(kind->fields, name[1]);
   if (field == nullptr)
     return refuse_name(name[1], fmt::format("a {} has no '{}'", first.word, name[1].word),
@@ -149,7 +150,7 @@ Result<QuantitySlot> Quantities::find_element(Steps name, const std::string& pre
   if (type == mjOBJ_JOINT && m.jnt_type[id] != mjJNT_HINGE && m.jnt_type[id] != mjJNT_SLIDE)
     return Error{ErrorKind::kInput,
                  fmt::format("joint '{}' is neither a hinge nor a slide", prefix + wanted),
-                 first.loc, "take its body: body(\"NAME\").velocity"};
+                 first.loc, "use its body: body(\"NAME\").velocity"};
   return place({.id = id, .width = field->width, .read = field->read}, name.subspan(2));
 }
 
@@ -181,12 +182,12 @@ Result<QuantitySlot> Quantities::find_probe(Steps name, int probe) {
 // Numbers that are read of a sensor with `count` of them.
 Result<int> Quantities::sensor_width(const NameStep& step, int count) const {
   if (step.index >= count)
-    return refuse_name(step, fmt::format("sensor '{}' has {} number{}, from [0]", step.arguments[0],
-                                         count, count == 1 ? "" : "s"));
+    return refuse_name(step, fmt::format("sensor '{}' has {} number{}, starting at [0]",
+                                         step.arguments[0], count, count == 1 ? "" : "s"));
   if (step.index < 0 && count != 1 && count != 3)
     return Error{ErrorKind::kInput,
                  fmt::format("sensor '{}' has {} numbers", step.arguments[0], count), step.loc,
-                 "write [0], [1] … behind it"};
+                 "append [0], [1] …"};
   return step.index < 0 ? count : 1;
 }
 
@@ -206,8 +207,7 @@ Result<std::vector<char>> Quantities::geoms_like(const std::string& pattern,
     }
   }
   if (any) return geoms;
-  return refuse_name(step, fmt::format("there is no geom and no body '{}'", pattern), pattern,
-                     known);
+  return refuse_name(step, fmt::format("there is no geom or body '{}'", pattern), pattern, known);
 }
 
 Result<QuantitySlot> Quantities::find_contacts(Steps name, const std::string& prefix) {
@@ -221,8 +221,8 @@ Result<QuantitySlot> Quantities::find_contacts(Steps name, const std::string& pr
     GLOAM_TRY(reader.b, geoms_like(first.arguments[1], first));
   }
   if (name.size() < 2)
-    return Error{ErrorKind::kInput, "which number of the contacts?", first.loc,
-                 "write .count, .force or .depth behind it"};
+    return Error{ErrorKind::kInput, "'contacts' needs a field", first.loc,
+                 "append .count, .force or .depth"};
   const ElementField* field = find_field(contact_fields(), name[1]);
   if (field == nullptr)
     return refuse_name(name[1], fmt::format("contacts have no '{}'", name[1].word), name[1].word,
@@ -238,11 +238,10 @@ Result<QuantitySlot> Quantities::place(QuantityReader reader, Steps rest) {
     const size_t axis =
         step.word.size() == 1 ? std::string_view("xyz").find(step.word) : std::string_view::npos;
     if (reader.width != 3 || axis == std::string_view::npos || step.is_call || step.index >= 0)
-      return Error{ErrorKind::kInput, fmt::format("'.{}' does not belong there", step.word),
-                   step.loc, reader.width == 3 ? "a vector has .x, .y and .z" : ""};
+      return Error{ErrorKind::kInput, fmt::format("unexpected '.{}'", step.word), step.loc,
+                   reader.width == 3 ? "a vector has .x, .y and .z" : ""};
     if (rest.size() > 1)
-      return Error{ErrorKind::kInput, fmt::format("'.{}' does not belong there", rest[1].word),
-                   rest[1].loc};
+      return Error{ErrorKind::kInput, fmt::format("unexpected '.{}'", rest[1].word), rest[1].loc};
     slot = {slot.first + static_cast<int>(axis), 1};
   }
   reader.first = size_;

@@ -114,7 +114,7 @@ Status check_request(const PropRequest& request) {
         return Error{ErrorKind::kInput,
                      fmt::format("a prop's size cannot be {} m", edge),
                      {},
-                     "edges are from 0.001 to 100 m: depth, width, height"};
+                     "depth, width and height must be from 0.001 to 100 m"};
   }
   return {};
 }

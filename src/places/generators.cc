@@ -53,8 +53,8 @@ bool has_rooms(const EnvironmentOptions& e) { return has_generator(e) && !e.terr
 Status validate_environment(const Scene& scene) {
   const EnvironmentOptions& e = scene.environment;
   if (!e.file.empty() + count_generators(e) > 1)
-    return Error{ErrorKind::kInput, "an environment is one thing: a file, or one generator", e.loc,
-                 "keep one; [[prop]] adds things to any of them"};
+    return Error{ErrorKind::kInput, "[environment] must have either a file or one generator", e.loc,
+                 "keep only one, and add objects with [[prop]]"};
   for (const PropOptions& prop : scene.props)
     if (const Status status = check_request(request_of(prop)); !status.ok())
       return located(status.error(), prop.loc);

@@ -10,7 +10,7 @@ Result<Place> make_house(const HouseOptions& options) {
   // Each storey has a hall and a room at least: refusing would make of [[randomize]] a matter of
   // luck.
   if (options.storeys == 2 && options.rooms < 4)
-    log_warning("a house of two storeys has 4 rooms at least, not {}", options.rooms);
+    log_warning("a house with two storeys has at least 4 rooms, not {}", options.rooms);
   Place place("house");
   place.openable = options.openable;
   Dice dice(options.seed, "house");

@@ -71,7 +71,7 @@ Quat turn(Vec3 axis, double angle) {
 PropPart& PropPart::show(const std::string& name, const std::string& material, const Solid& solid) {
   for (PropVisual& visual : visuals) {
     if (visual.name != name) continue;
-    GLOAM_CHECK(visual.material == material, "one visual of two materials");
+    GLOAM_CHECK(visual.material == material, "a visual has two materials");
     append(solid, &visual);
     return *this;
   }

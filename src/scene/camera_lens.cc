@@ -59,31 +59,32 @@ Status validate_lens(const CameraOptions& camera) {
         fmt::format("has {} coefficients 'd'; {} takes {}", lens.d.size(), model.name,
                     model.least == model.most ? fmt::format("{}", model.most)
                                               : fmt::format("{} or {}", model.least, model.most)),
-        "the order is that of ROS's CameraInfo: docs/cameras.md");
+        "the order is the same as in ROS CameraInfo: docs/cameras.md");
   }
   if (lens.sensor_size && (lens.fx || lens.fy))
-    return refuse(camera, "has both 'sensor_size' and 'fx' or 'fy'", "give one of them");
+    return refuse(camera, "has both 'sensor_size' and 'fx' or 'fy'", "specify only one of them");
   if (lens.fy && !lens.fx) return refuse(camera, "has 'fy' but no 'fx'");
   if (lens.sensor_size && !lens.focal_length)
     return refuse(camera, "has 'sensor_size' but no 'focal_length'");
   if (lens.focal_length && !lens.sensor_size && !lens.f_number)
-    return refuse(camera, "has 'focal_length' but no 'sensor_size'", "or give fx and fy in pixels");
+    return refuse(camera, "has 'focal_length' but no 'sensor_size'",
+                  "specify it, or 'fx' and 'fy' in pixels");
   if (lens.model == "equirectangular" && (lens.focal_length || lens.f_number))
-    return refuse(camera, "is a panorama: it has no focal length and no aperture");
+    return refuse(camera, "is a panorama and has no focal length or aperture");
   if (lens.f_number.has_value() != lens.focus_distance.has_value())
-    return refuse(camera, "needs 'f_number' and 'focus_distance' together");
+    return refuse(camera, "needs both 'f_number' and 'focus_distance'");
   if (lens.f_number && !lens.focal_length)
     return refuse(camera, "has 'f_number' but no 'focal_length'",
-                  "the opening is focal_length / f_number wide");
+                  "the aperture diameter is focal_length / f_number");
   if (lens.focus_distance && *lens.focus_distance <= *lens.focal_length)
-    return refuse(camera, "is focused within its focal length");
+    return refuse(camera, "must focus farther away than its focal length");
   return {};
 }
 
 Status apply_lens(const CameraOptions& camera, Intrinsics* k) {
   if (!camera.lens) return {};
   const LensOptions& lens = *camera.lens;
-  if (k->orthographic) return refuse(camera, "is of an orthographic camera, which has none");
+  if (k->orthographic) return refuse(camera, "cannot be used: the camera is orthographic");
   k->lens = model_of(lens).model;
   k->distortion = {};
   std::copy(lens.d.begin(), lens.d.end(), k->distortion.begin());
@@ -99,8 +100,8 @@ Status apply_lens(const CameraOptions& camera, Intrinsics* k) {
   k->cx = lens.cx.value_or(0.5 * k->width);
   k->cy = lens.cy.value_or(0.5 * k->height);
   if (const std::string fault = lens_fault(*k); !fault.empty()) {
-    return refuse(camera, "cannot be right: " + fault,
-                  "check the order and the signs of 'd', fx and fy, and the size of the picture");
+    return refuse(camera, "is invalid: " + fault,
+                  "check the order and signs of 'd', fx and fy, and the image size");
   }
   return {};
 }

@@ -110,11 +110,11 @@ class NamedOverride {
     if (any_)
       return Error{
           ErrorKind::kInput,
-          fmt::format("no {} of '{}' that fits '{:.60}' has an attribute '{}'", override_.tag,
+          fmt::format("no {} of '{}' that matches '{:.60}' has an attribute '{}'", override_.tag,
                       override_.robot, override_.pattern, override_.attribute),
           override_.loc};
     return Error{ErrorKind::kInput,
-                 fmt::format("no {} of '{}' fits '{:.60}'", override_.tag, override_.robot,
+                 fmt::format("no {} of '{}' matches '{:.60}'", override_.tag, override_.robot,
                              override_.pattern),
                  override_.loc,
                  names_.empty() ? "it has none" : suggest_name(override_.pattern, names_)};
@@ -170,16 +170,16 @@ Status check_override(const OverrideOptions& override) {
     return Error{
         ErrorKind::kInput,
         fmt::format("'{}' {}", override.tag,
-                    lacks ? "needs a name" : "is there once and takes no name"),
+                    lacks ? "needs a name" : "is unique and takes no name"),
         override.loc,
         fmt::format("[override.{}.{}{}]", override.robot, override.tag, lacks ? ".\"NAME\"" : "")};
   }
   const RE2 pattern(override.pattern, RE2::Quiet);
   if (!pattern.ok())
-    return Error{
-        ErrorKind::kInput,
-        fmt::format("'{:.60}' is no regular expression: {}", override.pattern, pattern.error()),
-        override.loc};
+    return Error{ErrorKind::kInput,
+                 fmt::format("'{:.60}' is not a valid regular expression: {}", override.pattern,
+                             pattern.error()),
+                 override.loc};
   bool found = false;
   for (const MjcfElement* element : elements) {
     const MjcfAttribute* attribute = element->find(override.attribute);

@@ -61,7 +61,7 @@ Result<Scene> read_scene(const toml::table& table, const fs::path& path, Scene s
       scene.hfields.empty() && scene.agents.empty() && scene.crowds.empty() &&
       scene.bare_model.empty()) {
     return Error{ErrorKind::kInput,
-                 "the scene has nothing in it",
+                 "the scene is empty",
                  {path.string(), 0, 0},
                  "add at least one [[robot]], [[object]], [[visual]] or an [environment]"};
   }
@@ -92,15 +92,14 @@ Result<Scene> load_scene(const fs::path& path, const FileAccess& access) {
   GLOAM_TRY(const toml::table table, parse_toml(*text, path.string()));
   if (is_model_toml(table)) return as_bare_model();
   if (text->size() > kLargestScene)
-    return Error{
-        ErrorKind::kInput, "a scene of more than 4 MiB is not read", {path.string(), 0, 0}};
+    return Error{ErrorKind::kInput, "the scene is larger than 4 MiB", {path.string(), 0, 0}};
   return read_scene(table, path, std::move(scene));
 }
 
 Result<Scene> parse_scene(std::string_view text, const fs::path& folder, const FileAccess& access) {
   const fs::path path = folder / "scene.toml";  // need not exist: files are found from there
   if (text.size() > kLargestScene)
-    return Error{ErrorKind::kInput, "a scene of more than 4 MiB is not read"};
+    return Error{ErrorKind::kInput, "the scene is larger than 4 MiB"};
   GLOAM_TRY(const std::optional<std::string> plain, plain_text(text, path.string()));
   GLOAM_TRY(const toml::table table, parse_toml(plain ? *plain : std::string(text), path.string()));
   Scene scene;
@@ -111,7 +110,7 @@ Result<Scene> parse_scene(std::string_view text, const fs::path& folder, const F
 
 Result<Scene> overlay_scene(const Scene& scene, std::string_view text, const std::string& file) {
   if (text.size() > kLargestScene)
-    return Error{ErrorKind::kInput, "a scene of more than 4 MiB is not read", {file, 0, 0}};
+    return Error{ErrorKind::kInput, "the scene is larger than 4 MiB", {file, 0, 0}};
   GLOAM_TRY(const std::optional<std::string> plain, plain_text(text, file));
   GLOAM_TRY(toml::table over, parse_toml(plain ? *plain : std::string(text), file));
   const fs::path path = scene.file.empty() ? fs::path("scene.toml") : scene.file;

@@ -43,7 +43,7 @@ size_t nearest_stamp(const std::vector<int64_t>& stamps, int64_t t) {
 }
 
 std::string span_of(const Trajectory& t) {
-  return fmt::format("'{}' is from {:.3f} to {:.3f} s", t.name,
+  return fmt::format("'{}' spans {:.3f} to {:.3f} s", t.name,
                      1e-9 * static_cast<double>(t.stamps.front()),
                      1e-9 * static_cast<double>(t.stamps.back()));
 }
@@ -65,10 +65,10 @@ Eigen::Matrix3d least_rotation(const Eigen::Vector3d& from, const Eigen::Vector3
 
 void warn_of_open_turn(const Trajectory& reference, const Trajectory& estimate) {
   log_warning(
-      "'{}' and '{}' lie on one line within a thousandth of its length: the turn of the alignment "
-      "about that line is undetermined, and so are the rotation and full parts of the absolute "
-      "error (ATE). Its translation and relative errors (RPE) are determined. Align by 'origin' or "
-      "'none' for rotations",
+      "'{}' and '{}' follow a straight line to within a thousandth of its length: the rotation of "
+      "the alignment about that line is undetermined, and so are the rotation and full parts of "
+      "the absolute error (ATE). Its translation part and relative errors (RPE) are determined. "
+      "Align by 'origin' or 'none' for rotations",
       reference.name, estimate.name);
 }
 
@@ -96,10 +96,10 @@ Result<Similarity> umeyama(const Trajectory& from, const Trajectory& to, WithSca
   const Eigen::Vector3d d = svd.singularValues();
   if (!(d[0] > std::numeric_limits<double>::epsilon()))
     return Error{ErrorKind::kInput,
-                 fmt::format("'{}' or '{}' stays at one point: no rotation can be found", from.name,
-                             to.name),
+                 fmt::format("'{}' or '{}' stays at one point: the rotation is undetermined",
+                             from.name, to.name),
                  {},
-                 "align by their first poses (origin), or not (none)"};
+                 "align by the first poses ('origin'), or not at all ('none')"};
   Eigen::Vector3d sign(1, 1, 1);
   if (svd.matrixU().determinant() * svd.matrixV().determinant() < 0) sign[2] = -1;
   Eigen::Matrix3d R = svd.matrixU() * sign.asDiagonal() * svd.matrixV().transpose();
@@ -121,14 +121,14 @@ Result<TrajectoryPair> associate(const Trajectory& reference, const Trajectory& 
   if (reference.stamps.empty() || estimate.stamps.empty()) {
     if (reference.size() == estimate.size()) return TrajectoryPair{reference, estimate};
     return Error{ErrorKind::kInput,
-                 fmt::format("'{}' has {} poses and '{}' has {}, without times to find equal ones",
+                 fmt::format("'{}' has {} poses and '{}' has {}, without times to match them",
                              reference.name, reference.size(), estimate.name, estimate.size()),
                  {},
-                 "files of KITTI have no times; use TUM's format"};
+                 "KITTI files have no times; use the TUM format"};
   }
   if (!(options.max_difference >= 0 && options.max_difference <= 1e9 &&
         std::fabs(options.offset) <= 1e9))
-    return Error{ErrorKind::kUsage, "differences and offsets of time are at most 1e9 s"};
+    return Error{ErrorKind::kUsage, "time differences and offsets must be at most 1e9 s"};
   const bool estimate_longer = estimate.size() > reference.size();
   const Trajectory& few = estimate_longer ? reference : estimate;
   const Trajectory& many = estimate_longer ? estimate : reference;
@@ -149,7 +149,7 @@ Result<TrajectoryPair> associate(const Trajectory& reference, const Trajectory& 
                  fmt::format("no poses within {} s of each other: {}, {}", options.max_difference,
                              span_of(reference), span_of(estimate)),
                  {},
-                 "an offset moves the estimate's times"};
+                 "use an offset to shift the estimate's times"};
   const Trajectory short_one = picked(few, of_few), long_one = picked(many, of_many);
   return estimate_longer ? TrajectoryPair{short_one, long_one}
                          : TrajectoryPair{long_one, short_one};

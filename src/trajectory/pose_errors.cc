@@ -31,8 +31,7 @@ double part_of(const RigidPose& E, ErrorPart part) {
 
 Result<PoseErrors> finished(PoseErrors errors) {
   for (const double value : errors.values)
-    if (!std::isfinite(value))
-      return Error{ErrorKind::kInput, "the error of a pose is beyond the numbers"};
+    if (!std::isfinite(value)) return Error{ErrorKind::kInput, "the error of a pose is not finite"};
   errors.statistics = statistics_of(errors.values);
   return errors;
 }
@@ -108,22 +107,22 @@ Status check_options(const Trajectory& along, const RelativeOptions& options) {
     return Error{ErrorKind::kUsage, std::move(message)};
   };
   if (!(options.delta > 0) || !std::isfinite(options.delta))
-    return wrong("the delta of relative errors is above 0");
+    return wrong("the delta of relative errors must be above 0");
   if (!(options.tolerance >= 0) || !std::isfinite(options.tolerance))
-    return wrong("the tolerance of delta is 0 or above");
+    return wrong("the tolerance of the delta must be 0 or above");
   if (options.unit == DeltaUnit::kFrames &&
       (options.delta != std::floor(options.delta) || options.delta > 1e15))
-    return wrong(fmt::format("a delta of {} frames is no whole number", options.delta));
+    return wrong(fmt::format("a delta of {} frames is not a whole number", options.delta));
   if (options.unit == DeltaUnit::kRadians && options.delta > std::numbers::pi)
-    return wrong("a delta of angles is at most half a turn");
+    return wrong("a delta of angles must be at most half a turn");
   if (options.unit == DeltaUnit::kSeconds && along.stamps.empty())
     return Error{ErrorKind::kInput,
                  fmt::format("'{}' has no times for a delta in seconds", along.name)};
   if (options.unit == DeltaUnit::kRadians && options.all_pairs && along.size() > kMostPosesByAngle)
     return Error{ErrorKind::kUnsupported,
-                 fmt::format("all pairs by angle of more than {} poses", kMostPosesByAngle),
+                 fmt::format("all pairs by angle are limited to {} poses", kMostPosesByAngle),
                  {},
-                 "consecutive pairs take any number"};
+                 "consecutive pairs are not limited"};
   return {};
 }
 
@@ -142,7 +141,7 @@ PosePairs chosen_pairs(const Trajectory& along, const RelativeOptions& options) 
 }  // namespace
 
 ErrorStatistics statistics_of(std::vector<double> values) {
-  GLOAM_CHECK(!values.empty(), "statistics of nothing");
+  GLOAM_CHECK(!values.empty(), "statistics need at least one value");
   const double n = static_cast<double>(values.size());
   ErrorStatistics out;
   for (const double v : values) {
@@ -165,7 +164,7 @@ ErrorStatistics statistics_of(std::vector<double> values) {
 
 Result<PoseErrors> absolute_errors(const TrajectoryPair& pair, ErrorPart part) {
   GLOAM_CHECK(pair.reference.size() == pair.estimate.size() && pair.reference.size() > 0,
-              "trajectories are associated first");
+              "trajectories must be associated first");
   PoseErrors errors;
   for (size_t i = 0; i < pair.reference.size(); ++i) {
     const RigidPose estimate = pose_of(pair.estimate, i), reference = pose_of(pair.reference, i);
@@ -180,15 +179,15 @@ Result<PoseErrors> absolute_errors(const TrajectoryPair& pair, ErrorPart part) {
 Result<PoseErrors> relative_errors(const TrajectoryPair& pair, ErrorPart part,
                                    const RelativeOptions& options) {
   GLOAM_CHECK(pair.reference.size() == pair.estimate.size() && pair.reference.size() > 0,
-              "trajectories are associated first");
+              "trajectories must be associated first");
   const Trajectory& along = options.from_reference ? pair.reference : pair.estimate;
   GLOAM_TRY_STATUS(check_options(along, options));
   const PosePairs pairs = chosen_pairs(along, options);
   if (pairs.empty())
     return Error{ErrorKind::kInput,
-                 fmt::format("no two of {} poses are {} apart", along.size(), options.delta),
+                 fmt::format("no two of the {} poses are {} apart", along.size(), options.delta),
                  {},
-                 "a lower delta"};
+                 "use a lower delta"};
   PoseErrors errors;
   for (const auto& [i, j] : pairs) {
     const RigidPose of_reference = relative(pose_of(pair.reference, i), pose_of(pair.reference, j));

@@ -75,7 +75,7 @@ class TrajectoryParser {
       GLOAM_TRY_STATUS(take(line.substr(begin)));
     }
     if (out_.positions.empty())
-      return Error{ErrorKind::kInput, "holds no pose", {out_.name, 0, 0}, kHint};
+      return Error{ErrorKind::kInput, "contains no poses", {out_.name, 0, 0}, kHint};
     note_rough_matrices();
     return std::move(out_);
   }
@@ -97,8 +97,9 @@ class TrajectoryParser {
     if (divider == ' ' && fields == 12) format = LineFormat::kKitti;
     if (format == LineFormat::kUnknown || (format_ != LineFormat::kUnknown && format != format_))
       return at_line(
-          fmt::format("{} fields divided by '{}' are {}", fields, divider,
-                      format == LineFormat::kUnknown ? "no pose" : "another format than before"),
+          fmt::format("{} fields separated by '{}' are {}", fields, divider,
+                      format == LineFormat::kUnknown ? "not a pose"
+                                                     : "not the format of the previous lines"),
           kHint);
     format_ = format;
     if (format != LineFormat::kKitti) GLOAM_TRY_STATUS(take_stamp(&line));
@@ -106,7 +107,7 @@ class TrajectoryParser {
     const size_t count = format == LineFormat::kKitti ? 12 : 7;
     for (size_t i = 0; i < count; ++i)
       if (!take_number(&line, &numbers[i]))
-        return at_line(fmt::format("'{}' is no finite number",
+        return at_line(fmt::format("'{}' is not a finite number",
                                    as_utf8(line.substr(0, std::min<size_t>(line.size(), 24)))));
     if (format == LineFormat::kKitti) return add_matrix(numbers);
     const double* q = numbers + 3;
@@ -117,7 +118,7 @@ class TrajectoryParser {
 
   Status take_stamp(std::string_view* line) {
     long double time = 0;
-    if (!take_number(line, &time)) return at_line("the time is no finite number");
+    if (!take_number(line, &time)) return at_line("the time is not a finite number");
     const long double seconds = format_ == LineFormat::kEuroc ? time * 1e-9L : time;
     if (std::fabs(seconds) > kMostSeconds)
       return at_line("the time is more than 4e9 s: is it in seconds (EuRoC: nanoseconds)?");
@@ -125,7 +126,7 @@ class TrajectoryParser {
     if (!out_.stamps.empty() && stamp < out_.stamps.back())
       return at_line(fmt::format("time goes back by {} s",
                                  static_cast<double>(out_.stamps.back() - stamp) * 1e-9),
-                     "sort its lines by time");
+                     "sort the lines by time");
     out_.stamps.push_back(stamp);
     return {};
   }
@@ -134,8 +135,8 @@ class TrajectoryParser {
     const RotationRows R = {m[0], m[1], m[2], m[4], m[5], m[6], m[8], m[9], m[10]};
     const double distance = distance_from_rotation(R);
     if (!(distance <= kRoundedRotation))
-      return at_line("its 3x3 part is no rotation matrix",
-                     "R Rᵀ must be the identity to 0.05, and R no reflection");
+      return at_line("the 3x3 part is not a rotation matrix",
+                     "R Rᵀ must be the identity to within 0.05, and R must not be a reflection");
     const bool is_rough = distance > kRotationTolerance;
     if (is_rough) {
       ++rough_;
@@ -146,10 +147,10 @@ class TrajectoryParser {
 
   void note_rough_matrices() {
     if (rough_ == 0) return;
-    out_.notes.push_back(fmt::format(
-        "{}: the matrices of {} of {} poses are rotations to {:.2g} only: the nearest rotation was "
-        "taken; write more decimals",
-        out_.name, rough_, out_.size(), roughest_));
+    out_.notes.push_back(
+        fmt::format("{}: the matrices of {} of {} poses are rotations only to within {:.2g}: the "
+                    "nearest rotation is used; write more decimals",
+                    out_.name, rough_, out_.size(), roughest_));
   }
 
   Status add_pose(const Vec3& p, const Quat& q) {
@@ -163,7 +164,7 @@ class TrajectoryParser {
   Status add(const Vec3& p, const RotationRows& R) {
     if (std::fabs(p.x) > kMostMeters || std::fabs(p.y) > kMostMeters ||
         std::fabs(p.z) > kMostMeters)
-      return at_line("a position of more than 1e12 m");
+      return at_line("a coordinate of the position exceeds 1e12 m");
     out_.positions.push_back(p);
     out_.rotations.push_back(R);
     return {};
@@ -206,15 +207,16 @@ Result<Trajectory> make_trajectory(std::span<const StampedPose> poses, const std
     const double length = std::sqrt(q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z);
     if (!(std::fabs(X.p.x) <= kMostMeters && std::fabs(X.p.y) <= kMostMeters &&
           std::fabs(X.p.z) <= kMostMeters))
-      return wrong(i, "is at no finite position");
-    if (!(std::fabs(length - 1) <= kQuaternionTolerance)) return wrong(i, "has no unit quaternion");
+      return wrong(i, "does not have a finite position");
+    if (!(std::fabs(length - 1) <= kQuaternionTolerance))
+      return wrong(i, "does not have a unit quaternion");
     if (!out.stamps.empty() && stamp < out.stamps.back())
-      return wrong(i, "is earlier than the one before");
+      return wrong(i, "is earlier than the previous pose");
     out.stamps.push_back(stamp);
     out.positions.push_back(X.p);
     out.rotations.push_back(rotation_of(q));
   }
-  if (poses.empty()) return Error{ErrorKind::kInput, "holds no pose", {name, 0, 0}};
+  if (poses.empty()) return Error{ErrorKind::kInput, "contains no poses", {name, 0, 0}};
   return out;
 }
 

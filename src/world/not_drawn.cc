@@ -85,7 +85,7 @@ class HiddenTable {
     const bool beyond = *hidden.groups.rbegin() >= kFirstHiddenGroup;
     std::string flags = is_site ? "--sites" : "";
     if (beyond || !is_site) flags += fmt::format("{}--groups {}", flags.empty() ? "" : " ", list);
-    return fmt::format("{} shows {}; in a scene [render] {}", flags,
+    return fmt::format("use {} to show {}, or in a scene [render] {}", flags,
                        hidden.count == 1 ? "it" : "them",
                        is_site && !beyond ? "sites = true"
                        : is_site          ? fmt::format("sites = true, groups = [{}]", list)
@@ -114,7 +114,7 @@ NotDrawn World::not_drawn() const {
     if (instance.shown || g < 0) continue;
     if (stands_for_an_object(world.scene, name_of(m, mjOBJ_GEOM, g))) continue;
     const bool stands_back = draws_group(world.scene.render, instance.group);
-    hidden.add("geom", stands_back ? ": visuals are, in their place" : "",
+    hidden.add("geom", stands_back ? ": visuals are drawn instead" : "",
                name_of(m, mjOBJ_BODY, m.geom_bodyid[g]), line_in(world.lines.geoms, g),
                instance.group);
   }

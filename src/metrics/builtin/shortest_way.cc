@@ -11,7 +11,8 @@ ShortestWays::ShortestWays(const CompiledWorld& world, const MetricInstant& inst
   if (world.agents.empty()) return;
   auto made = NavWorld::create(world, *instant.model, *instant.data);
   if (!made.ok()) {
-    log_warning("shortest ways of goals are straight lines: {}", made.error().to_string());
+    log_warning("shortest paths to goals are approximated by straight lines: {}",
+                made.error().to_string());
     return;
   }
   nav_ = std::move(*made);

@@ -139,7 +139,7 @@ void put(const char* label, const std::string& material, TriangleMesh mesh, Plac
 
 HeightField sample_landscape(const Landscape& land, const Rect& area, double step) {
   const Result<HeightGrid> grid = make_height_grid({area.x0, area.y0}, {area.x1, area.y1}, step, 1);
-  GLOAM_CHECK(grid.ok(), "the options bound the samples");
+  GLOAM_CHECK(grid.ok(), "options must limit the number of samples");
   HeightField field;
   field.grid = *grid;
   field.base = kBase;

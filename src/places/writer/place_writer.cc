@@ -84,9 +84,9 @@ class PlaceWriter {
   Status check_name(mjtObj type, const std::string& text, const SourceLoc& loc) const {
     if (mjs_findElement(spec_, type, text.c_str()) == nullptr) return {};
     return Error{ErrorKind::kInput,
-                 fmt::format("the environment has a {} '{}' already",
+                 fmt::format("the environment already has a {} '{}'",
                              type == mjOBJ_BODY ? "body" : "joint", text),
-                 loc, "rename what the scene adds"};
+                 loc, "rename the element that the scene adds"};
   }
 
   // Bodies and joints are looked up by their names, which must therefore be these.

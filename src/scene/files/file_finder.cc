@@ -49,8 +49,9 @@ Status check_model_file(const fs::path& path, const std::string& as_written, con
     GLOAM_TRY(const std::string text, read_plain_text(path, kLargestModelText));
     GLOAM_TRY(const toml::table table, parse_toml(text, path.string()));
     if (is_model_toml(table)) return {};
-    return Error{ErrorKind::kInput, fmt::format("'{}' is a scene; a model is wanted here", name),
-                 loc, "give an MJCF (.xml) or URDF file, or a model in TOML (docs/models.md)"};
+    return Error{ErrorKind::kInput,
+                 fmt::format("'{}' is a scene, but a model is expected here", name), loc,
+                 "use an MJCF (.xml) or URDF file, or a TOML model (docs/models.md)"};
   }
   constexpr uint64_t kLargestPointer = 1024;
   if (const Result<std::string> text = read_text_file(path, kLargestPointer);
@@ -59,8 +60,8 @@ Status check_model_file(const fs::path& path, const std::string& as_written, con
   GLOAM_TRY_STATUS(refuse_mesh(path, name, loc));
   if (is_container(path)) {
     return Error{ErrorKind::kUnsupported,
-                 fmt::format("'{}' is an archive or binary model, which is not read", name), loc,
-                 "give the MJCF (.xml) or URDF file"};
+                 fmt::format("'{}' is an archive or binary model, which is not supported", name),
+                 loc, "use the MJCF (.xml) or URDF file"};
   }
   return {};
 }
@@ -96,12 +97,12 @@ Status FileFinder::find_model(fs::path* file, const SourceLoc& loc) const {
 Status FileFinder::resolve(fs::path* file, const std::string& written, const SourceLoc& loc) const {
   const std::string refusal = why_not_a_path(written);
   if (!refusal.empty())
-    return Error{ErrorKind::kInput, fmt::format("the file '{:.80}' {}", written, refusal), loc};
+    return Error{ErrorKind::kInput, fmt::format("the path '{:.80}' {}", written, refusal), loc};
   const fs::path path = absolute_path(*file, folder_);
   const std::string why = why_not_readable(path, roots_);
   if (!why.empty()) {
     return Error{ErrorKind::kInput, fmt::format("the file '{:.200}' {}", written, why), loc,
-                 "--root FOLDER widens what the scene may read"};
+                 "use --root FOLDER to let the scene read from a larger folder"};
   }
   *file = path;
   return {};

@@ -15,37 +15,37 @@ struct Format {
 };
 
 constexpr std::string_view kUsdRemedy =
-    "export the robot as URDF or MJCF from the program that made it; shapes alone can be exported "
-    "as glTF and drawn by a [[visual]]";
+    "export the robot as URDF or MJCF from the program that created it; shapes alone can be "
+    "exported as glTF and added as a [[visual]]";
 
 // In lower case.
 constexpr Format kTexts[] = {
     {"#usda", "a USD stage", kUsdRemedy},
     {"pxr-usdc", "a USD stage", kUsdRemedy},
-    {"pk\x03\x04", "a ZIP archive", "unpack it and give the MJCF or URDF in it"},
+    {"pk\x03\x04", "a ZIP archive", "unpack it and use the MJCF or URDF inside"},
     {"#vrml", "a VRML file (Webots)", "export the robot as URDF from Webots"},
-    {"<!doctype html", "a web page", "download the file itself: the page's link \"raw\""},
-    {"<html", "a web page", "download the file itself: the page's link \"raw\""},
-    {"{", "JSON", "give an MJCF or URDF file, or a scene in TOML"},
-    {"%yaml", "YAML", "give an MJCF or URDF file, or a scene in TOML"},
-    {"---", "YAML", "give an MJCF or URDF file, or a scene in TOML"},
-    {"solid ", "a mesh (STL)", "draw it by a [[visual]], or name it in an MJCF or URDF"},
-    {"ply", "a mesh (PLY)", "draw it by a [[visual]], or name it in an MJCF or URDF"},
-    {"gltf", "a mesh (GLB)", "draw it by a [[visual]], or make it a body by an [[object]]"},
+    {"<!doctype html", "a web page", "download the file itself through the page's \"raw\" link"},
+    {"<html", "a web page", "download the file itself through the page's \"raw\" link"},
+    {"{", "JSON", "use an MJCF or URDF file, or a TOML scene"},
+    {"%yaml", "YAML", "use an MJCF or URDF file, or a TOML scene"},
+    {"---", "YAML", "use an MJCF or URDF file, or a TOML scene"},
+    {"solid ", "a mesh (STL)", "add it as a [[visual]], or reference it in an MJCF or URDF"},
+    {"ply", "a mesh (PLY)", "add it as a [[visual]], or reference it in an MJCF or URDF"},
+    {"gltf", "a mesh (GLB)", "add it as a [[visual]], or as a body with [[object]]"},
 };
 
 constexpr Format kElements[] = {
     {"sdf", "an SDF (Gazebo)",
      "convert it: pip install sdformat-mjcf, then sdf2mjcf IN.sdf OUT.xml"},
-    {"gazebo", "an SDF of old (Gazebo)", "convert it with gz sdf -p, then with sdf2mjcf"},
-    {"COLLADA", "a COLLADA mesh", "draw it by a [[visual]], or name it in an MJCF or URDF"},
-    {"html", "a web page", "download the file itself: the page's link \"raw\""},
-    {"launch", "a ROS launch file", "give the URDF or MJCF that it loads"},
-    {"package", "a ROS package's manifest", "give the URDF or MJCF in the package"},
-    {"model", "a Gazebo model's model.config", "convert the SDF that it names by sdf2mjcf"},
-    {"mujocoinclude", "a part of an MJCF", "give the file that includes it"},
-    {"svg", "a picture (SVG)", "give an MJCF or URDF file"},
-    {"X3D", "an X3D file", "export it as glTF and draw it by a [[visual]]"},
+    {"gazebo", "an old SDF (Gazebo)", "convert it with gz sdf -p, then with sdf2mjcf"},
+    {"COLLADA", "a COLLADA mesh", "add it as a [[visual]], or reference it in an MJCF or URDF"},
+    {"html", "a web page", "download the file itself through the page's \"raw\" link"},
+    {"launch", "a ROS launch file", "use the URDF or MJCF that it loads"},
+    {"package", "a ROS package manifest", "use the URDF or MJCF in the package"},
+    {"model", "the model.config of a Gazebo model", "convert the SDF that it names with sdf2mjcf"},
+    {"mujocoinclude", "an MJCF fragment", "use the file that includes it"},
+    {"svg", "an image (SVG)", "use an MJCF or URDF file"},
+    {"X3D", "an X3D file", "export it as glTF and add it as a [[visual]]"},
     {"Robot", "an OpenRAVE robot", "export it as URDF or COLLADA"},
     {"KinBody", "an OpenRAVE body", "export it as URDF or COLLADA"},
     {"Environment", "an OpenRAVE environment", "export it as URDF or COLLADA"},
@@ -84,7 +84,7 @@ Error foreign_element_error(std::string_view top, const std::string& file) {
   for (const Format& format : kElements)
     if (top == format.mark) return error_of(format, file);
   return {ErrorKind::kInput,
-          fmt::format("the top element is <{:.40}>, so this is neither MJCF nor URDF", top),
+          fmt::format("the root element is <{:.40}>, so this is neither MJCF nor URDF", top),
           {file, 1, 0},
           "MJCF starts with <mujoco>, URDF with <robot>"};
 }
@@ -96,12 +96,12 @@ Status check_is_urdf(const pugi::xml_node& robot, const std::string& file) {
       return Error{ErrorKind::kInput,
                    fmt::format("is an SRDF, not a URDF: it has <{}> and no <link>", child.name()),
                    {file, 1, 0},
-                   "give the URDF of the robot; an SRDF adds groups and poses for MoveIt to it"};
+                   "use the robot's URDF; an SRDF adds groups and poses for MoveIt"};
   return Error{
       ErrorKind::kInput,
       "is an empty robot: it has no <link>",
       {file, 1, 0},
-      "if the robot is in files that it includes, run xacro first: xacro FILE > FILE.urdf"};
+      "if the robot is defined in included files, run xacro first: xacro FILE > FILE.urdf"};
 }
 
 }  // namespace gloam

@@ -61,9 +61,8 @@ void tell_if_slow(const Replicate& replicate, const fs::path& file) {
   constexpr double kSlow = 2;  // [s]
   if (replicate.seconds < kSlow) return;
   log_warning(
-      "{}:{}: MuJoCo takes about {:.0f} s for a <replicate> of {} copies, four times that for "
-      "twice "
-      "as many: put a <replicate> of {:.0f} into one of {:.0f} (docs/scenes.md)",
+      "{}:{}: MuJoCo takes about {:.0f} s for a <replicate> of {} copies, and four times as long "
+      "for twice as many: nest a <replicate> of {:.0f} in one of {:.0f} (docs/scenes.md)",
       file.string(), replicate.line, replicate.seconds, replicate.copies,
       std::ceil(std::sqrt(replicate.copies)), std::ceil(std::sqrt(replicate.copies)));
 }
@@ -136,7 +135,7 @@ Result<ModelFiles::Content> ModelFiles::open(const fs::path& path, std::string* 
   const std::string refusal = why_not_readable(path, roots_);
   if (!refusal.empty()) return fail(ErrorKind::kInput, refusal);
   if (is_container(path))
-    return fail(ErrorKind::kUnsupported, "is an archive or binary model, which is not read");
+    return fail(ErrorKind::kUnsupported, "is an archive or binary model, which is not supported");
   const bool is_new = depended_.insert(path).second;
   std::error_code code;
   if (!fs::exists(path, code)) {
@@ -152,7 +151,7 @@ Result<ModelFiles::Content> ModelFiles::open(const fs::path& path, std::string* 
   if (is_lfs_pointer(*bytes)) return fail(ErrorKind::kInput, std::string(kLfsPointer));
   total_size_ += bytes->size();
   if (total_size_ > kLargestTotal)
-    return fail(ErrorKind::kInput, "is one file too many: the model's files exceed 8 GiB");
+    return fail(ErrorKind::kInput, "brings the total size of the model's files above 8 GiB");
   // XML that MuJoCo finds by a way the scan did not follow is scanned now, before its parser sees
   // it.
   const std::string extension = lower_extension(path);
@@ -186,13 +185,15 @@ Status ModelFiles::scan(const fs::path& file, const fs::path& model, const Sourc
                         std::vector<fs::path>& stack) {
   if (std::find(stack.begin(), stack.end(), file) != stack.end()) {
     return Error{ErrorKind::kInput, fmt::format("'{}' includes itself", file.filename().string()),
-                 named_at, "break the circle of <include> or <model> elements"};
+                 named_at, "break the cycle of <include> or <model> elements"};
   }
   if (stack.size() >= kDeepestInclude || scans_.size() >= kMostXmlFiles) {
-    return Error{ErrorKind::kInput,
-                 fmt::format("more than {} files include each other, or {} deep", kMostXmlFiles,
-                             kDeepestInclude),
-                 named_at};
+    return Error{
+        ErrorKind::kInput,
+        fmt::format(
+            "there are more than {} included files, or includes are nested more than {} deep",
+            kMostXmlFiles, kDeepestInclude),
+        named_at};
   }
   if (scans_.contains(file)) return {};
   std::string hash;
@@ -207,7 +208,7 @@ Status ModelFiles::scan(const fs::path& file, const fs::path& model, const Sourc
     error.hint = content.error().message == kLfsPointer ? "fetch it: git lfs pull"
                  : why_not_readable(file, roots_).empty()
                      ? "check the path"
-                     : "--root FOLDER widens what the model may read";
+                     : "use --root FOLDER to let the model read from a larger folder";
     return error;
   }
   const std::string& text = **content;
@@ -237,16 +238,16 @@ Status ModelFiles::scan(const fs::path& file, const fs::path& model, const Sourc
     if (!refusal.empty()) {
       return Error{
           ErrorKind::kInput,
-          fmt::format("the file '{:.80}' of <{}> {}", reference.value, reference.element, refusal),
+          fmt::format("the path '{:.80}' of <{}> {}", reference.value, reference.element, refusal),
           loc};
     }
     const std::string extension = lower_extension(reference.value);
     if (reference.element == "mesh" &&
         (extension == ".glb" || extension == ".gltf" || extension == ".dae")) {
       return Error{ErrorKind::kUnsupported,
-                   fmt::format("the mesh '{:.80}' is in a format that MuJoCo does not read",
+                   fmt::format("the mesh '{:.80}' is in a format that MuJoCo does not support",
                                reference.value),
-                   loc, "convert it to OBJ, or draw it by a [[visual]] on the body"};
+                   loc, "convert it to OBJ, or add it as a [[visual]] on the body"};
     }
     if (!leads_to_xml(reference)) continue;
     // MuJoCo looks beside the main file; beside the including one is where people expect it.
@@ -280,8 +281,8 @@ Status ModelFiles::add_model(const fs::path& file, const FileAccess& access, con
   if (is_container(path)) {
     return Error{
         ErrorKind::kUnsupported,
-        fmt::format("'{}' is an archive or binary model, which is not read", file.string()), loc,
-        "give the MJCF (.xml) or URDF file"};
+        fmt::format("'{}' is an archive or binary model, which is not supported", file.string()),
+        loc, "use the MJCF (.xml) or URDF file"};
   }
   GLOAM_TRY_STATUS(refuse_mesh(path, file.string(), loc));
   GLOAM_TRY_STATUS(admit(path, access));
@@ -422,9 +423,10 @@ void ModelFiles::explain_picture(Error* error) const {
     const std::string extension = lower_extension(name);
     if (!has_jpeg && !is_unknown && extension != ".jpg" && extension != ".jpeg") continue;
     error->message = fmt::format(
-        "the picture '{:.200}' of a <texture> is {}, which MuJoCo does not read", reference.value,
-        has_jpeg || extension == ".jpg" || extension == ".jpeg" ? "a JPEG" : "no PNG or KTX file");
-    error->hint = fmt::format("convert it: magick {0}{1} {0}.png, and name that",
+        "the image '{:.200}' of a <texture> is {}; MuJoCo supports only PNG and KTX",
+        reference.value,
+        has_jpeg || extension == ".jpg" || extension == ".jpeg" ? "a JPEG" : "in another format");
+    error->hint = fmt::format("convert it with magick {0}{1} {0}.png, and use that file",
                               name.stem().string(), name.extension().string());
     return;
   }
@@ -436,7 +438,7 @@ Error ModelFiles::explain(const std::string& message, const fs::path& model) con
     return {ErrorKind::kInput,
             "out of memory: MuJoCo cannot compile the model",
             {model.string(), 0, 0},
-            "give the process more, or use smaller meshes and pictures"};
+            "give the process more memory, or use smaller meshes and images"};
   for (const Failure& failure : failures_) {
     if (message.find(failure.path.filename().string()) == std::string::npos) continue;
     Error error{failure.kind, fmt::format("'{}' {}", failure.path.string(), failure.reason),
@@ -447,7 +449,7 @@ Error ModelFiles::explain(const std::string& message, const fs::path& model) con
     } else if (failure.reason == "does not exist") {
       error.hint = "check the path, meshdir and texturedir";
     } else if (!why_not_readable(failure.path, roots_).empty()) {
-      error.hint = "--root FOLDER widens what the model may read";
+      error.hint = "use --root FOLDER to let the model read from a larger folder";
     }
     return error;
   }
@@ -473,7 +475,7 @@ Error ModelFiles::explain(const std::string& message, const fs::path& model) con
   find_place(element, &error, absolute_path(model, ""));
   explain_picture(&error);
   if (error.hint.empty()) error.hint = mujoco_hint(error.message, element);
-  if (error.message.empty()) error.message = "MuJoCo refused the model without a reason";
+  if (error.message.empty()) error.message = "MuJoCo rejected the model without giving a reason";
   return error;
 }
 

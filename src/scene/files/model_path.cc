@@ -68,9 +68,9 @@ Status refuse_mesh(const fs::path& path, const std::string& as_written, const So
       std::ranges::find(kUnread, lower_extension(path)) == std::end(kUnread))
     return {};
   return Error{ErrorKind::kInput,
-               fmt::format("'{:.200}' is a mesh; a model is wanted here", as_written), loc,
-               "draw it by a [[visual]], make a body of it by an [[object]], stand in it as "
-               "[environment] file, or look at it by gloam convert (docs/import.md)"};
+               fmt::format("'{:.200}' is a mesh, but a model is expected here", as_written), loc,
+               "add it as a [[visual]], as a body with [[object]] or as the [environment] file, or "
+               "view it with gloam convert (docs/import.md)"};
 }
 
 bool holds_homes(const fs::path& folder) {
@@ -105,12 +105,12 @@ std::string why_not_a_path(std::string_view name) {
   if (name.empty()) return "is empty";
   if (name.size() > kLongestPath) return fmt::format("has {} characters", name.size());
   for (const char c : name) {
-    if (static_cast<unsigned char>(c) < 0x20) return "holds a control character";
+    if (static_cast<unsigned char>(c) < 0x20) return "contains a control character";
   }
   // "C:" and "http:" make a path absolute to MuJoCo, and mean something else to this system.
   const size_t colon = name.find(':');
   if (colon != std::string_view::npos && name.find_first_of("/\\") > colon)
-    return "is a network address or has a scheme; only files are read";
+    return "is a network address or has a scheme; only local files are supported";
   return {};
 }
 
@@ -125,7 +125,7 @@ Result<ModelRoot> find_model_root(const fs::path& file, const FileAccess& access
       return Error{ErrorKind::kInput,
                    fmt::format("is not inside the folder '{}' given with --root", root.string()),
                    {path.string(), 0, 0},
-                   "choose a --root that holds the file"};
+                   "choose a --root that contains the file"};
     }
   } else if (access.strict) {
     root = linked = path.parent_path();
@@ -143,7 +143,7 @@ Result<ModelRoot> find_model_root(const fs::path& file, const FileAccess& access
 std::string why_not_readable(const fs::path& path, const std::vector<ModelRoot>& roots) {
   std::error_code code;
   const fs::path canonical = fs::weakly_canonical(path, code);
-  if (code) return fmt::format("cannot be reached: {}", code.message());
+  if (code) return fmt::format("cannot be accessed: {}", code.message());
   bool through_link = false;
   for (const ModelRoot& root : roots) {
     if (root.is_wide && !may_read_below_wide(canonical, root.canonical)) continue;

@@ -13,29 +13,30 @@ struct Hint {
 // of its compiler that do not say how. The first that fits counts.
 constexpr Hint kHints[] = {
     {"unrecognized element", "composite",
-     "MuJoCo 4 no longer has <composite>: a cable, rope or loop is a <flexcomp dim=\"1\"> with "
-     "<elasticity>, cloth one of dim=\"2\", a soft solid one of dim=\"3\", particles are a "
-     "<replicate>"},
+     "MuJoCo 4 no longer has <composite>: use <flexcomp dim=\"1\"> with <elasticity> for a cable, "
+     "rope or loop, dim=\"2\" for cloth, dim=\"3\" for a soft solid, and <replicate> for "
+     "particles"},
     {"unrecognized element", "flexvert", "MuJoCo 4 no longer has <flexvert>: use <flexstrain>"},
     {"unrecognized attribute: 'collision'", "option",
-     "the attribute is gone from MuJoCo: leave it out"},
+     "MuJoCo no longer has this attribute: remove it"},
     {"unrecognized attribute: 'apirate'", "option",
-     "the attribute is gone from MuJoCo: leave it out"},
+     "MuJoCo no longer has this attribute: remove it"},
     {"unrecognized attribute: 'exactmeshinertia'", "compiler",
-     "the attribute is gone from MuJoCo: give meshes inertia=\"exact\""},
+     "MuJoCo no longer has this attribute: set inertia=\"exact\" on meshes"},
     {"unrecognized attribute: 'convexhull'", "compiler",
-     "the attribute is gone from MuJoCo: leave it out"},
+     "MuJoCo no longer has this attribute: remove it"},
     {"plugin mujoco.elasticity", "",
-     "MuJoCo 4 no longer has this plugin: <flexcomp> has <elasticity> of its own"},
+     "MuJoCo 4 no longer has this plugin: use <elasticity> in <flexcomp>"},
     {"plugin ", "plugin",
-     "Gloam loads the plugins that come with MuJoCo, and no others: leave it out, or use an "
-     "actuator of MJCF or a [robot.controller]"},
+     "Gloam loads only the plugins that come with MuJoCo: remove it, or use an MJCF actuator or a "
+     "[robot.controller]"},
     {"inertia must satisfy A + B >= C", "",
-     "no body can have these moments: correct them, or let MuJoCo spread them evenly by <compiler "
-     "balanceinertia=\"true\"/>, in a scene by [override.ROBOT.compiler] balanceinertia = true"},
+     "no body can have these moments of inertia: correct them, or let MuJoCo average them with "
+     "<compiler balanceinertia=\"true\"/>, in a scene with [override.ROBOT.compiler] "
+     "balanceinertia = true"},
     {"mass and inertia of moving bodies must be larger than mjMINVAL", "",
-     "give the body a mass, or all of them a least one by <compiler boundmass=\"0.001\" "
-     "boundinertia=\"1e-6\"/>, in a scene by [override.ROBOT.compiler] boundmass = 0.001"},
+     "give the body a mass, or set a minimum for all bodies with <compiler boundmass=\"0.001\" "
+     "boundinertia=\"1e-6\"/>, in a scene with [override.ROBOT.compiler] boundmass = 0.001"},
 };
 
 }  // namespace

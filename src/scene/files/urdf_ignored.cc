@@ -20,15 +20,15 @@ struct Remark {
 };
 constexpr Remark kRemarks[] = {
     {"transmission", "joints have no motors or gears of their own",
-     "a [robot.controller] moves the joints (docs/scenes.md); an MJCF has <actuator>"},
+     "use a [robot.controller] to move the joints (docs/scenes.md), or <actuator> in an MJCF"},
     {"ros2_control", "no hardware interface is loaded",
-     "a [robot.controller] moves the joints; topics and follow_joint_trajectory command it "
-     "(docs/ros2.md)"},
-    {"gazebo", "sensors, plugins and surfaces for Gazebo",
-     "add a [[camera]], [[lidar]] … to the scene; friction is set by [override]"},
-    {"safety_controller", "no soft limits", "the joint's <limit> holds"},
-    {"calibration", "positions count from the joint's zero", ""},
-    {"sensor", "sensors are the scene's", "add a [[camera]], [[lidar]] … to the scene"},
+     "use a [robot.controller] to move the joints, and topics or follow_joint_trajectory to "
+     "command it (docs/ros2.md)"},
+    {"gazebo", "sensors, plugins and surfaces of Gazebo are not supported",
+     "add a [[camera]], [[lidar]] … to the scene; set friction with [override]"},
+    {"safety_controller", "soft limits are not supported", "the joint's <limit> applies"},
+    {"calibration", "positions are measured from the joint's zero", ""},
+    {"sensor", "sensors belong to the scene", "add a [[camera]], [[lidar]] … to the scene"},
 };
 
 // Elements of one name below nodes of one kind.
@@ -59,11 +59,12 @@ std::vector<Error> list_ignored_elements(
   for (const auto& [name, ignored] : found) {
     const auto* remark = std::ranges::find(kRemarks, name, &Remark::element);
     const bool is_known = remark != std::end(kRemarks);
-    std::string text = fmt::format("<{:.60}> is left out", name);
+    std::string text = fmt::format("<{:.60}> is ignored", name);
     if (is_known) text += fmt::format(": {}", remark->meaning);
     if (ignored.count > 1) text += fmt::format(" ({} of them)", ignored.count);
-    notes.push_back({ErrorKind::kUnsupported, std::move(text), loc_of(ignored.first),
-                     is_known ? std::string(remark->remedy) : "URDF has no such element here"});
+    notes.push_back(
+        {ErrorKind::kUnsupported, std::move(text), loc_of(ignored.first),
+         is_known ? std::string(remark->remedy) : "URDF does not define this element here"});
   }
   return notes;
 }

@@ -97,7 +97,7 @@ class Preparer {
       const auto [first, is_new] = links.emplace(link.attribute("name").value(), link);
       if (is_new) continue;
       return Error{ErrorKind::kInput,
-                   fmt::format("the link '{:.80}' is there twice, first in line {}", first->first,
+                   fmt::format("the link '{:.80}' is defined twice, first on line {}", first->first,
                                loc_of(first->second).line),
                    loc_of(link)};
     }
@@ -107,7 +107,7 @@ class Preparer {
       if (is_new) continue;
       return Error{
           ErrorKind::kInput,
-          fmt::format("the link '{:.80}' hangs from two joints, '{:.80}' and '{:.80}'", child,
+          fmt::format("the link '{:.80}' is the child of two joints, '{:.80}' and '{:.80}'", child,
                       first->second.attribute("name").value(), joint.attribute("name").value()),
           loc_of(joint)};
     }
@@ -115,9 +115,9 @@ class Preparer {
                             return !joint_above.contains(link.first);
                           });
     if (has_root) return check_depth(robot, joint_above);
-    return Error{ErrorKind::kInput, "every link hangs from a joint: the joints make a loop",
+    return Error{ErrorKind::kInput, "every link is the child of a joint: the joints form a loop",
                  loc_of(robot.child("joint")),
-                 "one link must be the root; close loops by <equality> in MJCF"};
+                 "one link must be the root; close loops with <equality> in MJCF"};
   }
 
   // Lengths of chains of links. MuJoCo's time grows with the square of the longest.
@@ -137,8 +137,8 @@ class Preparer {
       for (; !unknown.empty(); unknown.pop_back()) depths[unknown.back()] = ++depth;
       if (depth > kDeepestLinks)
         return Error{ErrorKind::kInput,
-                     fmt::format("links hang from each other more than {} deep", kDeepestLinks),
-                     loc_of(link), "a rope or a cable is a <flexcomp> in MJCF"};
+                     fmt::format("the chain of links is more than {} deep", kDeepestLinks),
+                     loc_of(link), "model a rope or a cable as a <flexcomp> in MJCF"};
     }
     return {};
   }
@@ -148,11 +148,10 @@ class Preparer {
     for (const pugi::xpath_node& found : robot.select_nodes(".//material/texture")) {
       const pugi::xml_node texture = found.node();
       unsupported->push_back({ErrorKind::kUnsupported,
-                              fmt::format("the picture '{:.200}' of material '{:.80}' is not drawn",
+                              fmt::format("the image '{:.200}' of material '{:.80}' is not drawn",
                                           texture.attribute("filename").value(),
                                           texture.parent().attribute("name").value()),
-                              loc_of(texture),
-                              "give the robot as MJCF, or draw it by a [[visual]]"});
+                              loc_of(texture), "use an MJCF of the robot, or add a [[visual]]"});
     }
   }
 
@@ -230,10 +229,10 @@ class Preparer {
     const std::string scheme = name.substr(0, scheme_end), rest = name.substr(scheme_end + 3);
     if (scheme == "file") return absolute_path(rest, file_.parent_path());
     if (scheme != "package" && scheme != "model") {
-      return Error{
-          ErrorKind::kInput,
-          fmt::format("the mesh '{:.80}' is not a file: '{:.20}://' is not read", name, scheme),
-          loc_of(mesh), "only package:// and files are read"};
+      return Error{ErrorKind::kInput,
+                   fmt::format("the mesh '{:.80}' is not a file: '{:.20}://' is not supported",
+                               name, scheme),
+                   loc_of(mesh), "use package:// or the path of a file"};
     }
     const size_t slash = std::min(rest.find('/'), rest.size());
     const std::string package = rest.substr(0, slash);
@@ -245,7 +244,7 @@ class Preparer {
     if (!inside.empty()) return inside;
     return Error{ErrorKind::kInput,
                  fmt::format("the folder of package '{:.80}' is not known", package), loc_of(mesh),
-                 fmt::format("give it with --package {:.80}=FOLDER", package)};
+                 fmt::format("specify it with --package {:.80}=FOLDER", package)};
   }
 
   // Writes the path of every mesh as it lies on disk. With `unsupported`, parts whose mesh cannot
@@ -277,7 +276,7 @@ class Preparer {
                                           fmt::format("the visual mesh '{:.200}' is not drawn: {}",
                                                       mesh.attribute("filename").value(),
                                                       exists_(*path) ? "its format is not supported"
-                                                                     : "there is no such file"),
+                                                                     : "the file does not exist"),
                                           loc_of(mesh), "convert it to GLB, COLLADA, OBJ or STL"}
                                   : path.error();
           unsupported->push_back(std::move(error));

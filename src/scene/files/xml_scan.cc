@@ -102,14 +102,14 @@ Status check_sizes(const pugi::xml_node& node, const std::function<SourceLoc()>&
     const double size = product_of_numbers(attribute.value());
     if (size <= limit.largest) continue;
     return Error{ErrorKind::kInput,
-                 fmt::format("{} {}=\"{:.40}\" is more than the limit of {}", element,
-                             limit.attribute, attribute.value(), limit.largest),
+                 fmt::format("{} {}=\"{:.40}\" exceeds the limit of {}", element, limit.attribute,
+                             attribute.value(), limit.largest),
                  loc()};
   }
   if (element == "size" && node.attribute("memory") &&
       memory_bytes(node.attribute("memory").value()) > kLargestArena) {
     return Error{ErrorKind::kInput,
-                 fmt::format("size memory=\"{:.40}\" is more than the limit of 64G",
+                 fmt::format("size memory=\"{:.40}\" exceeds the limit of 64G",
                              node.attribute("memory").value()),
                  loc()};
   }
@@ -126,7 +126,7 @@ Status check_fatal(const pugi::xml_node& node, const std::function<SourceLoc()>&
   };
   const char* what = nullptr;
   if (element == "model" && above == "asset" && !node.attribute("file")) {
-    what = "<model> lacks 'file'";
+    what = "<model> is missing 'file'";
   } else if (element == "connect" && node.attribute("anchor") && is_blank("anchor")) {
     what = "<connect> has an empty 'anchor': it takes 3 numbers";
   } else if (element == "plugin" && above == "flexcomp" && node.attribute("plugin") &&

@@ -29,7 +29,7 @@ Status check_node(const Node& node) {
       status = check_mjcf_value(attribute, *value);
     } else if (attribute.is_required) {
       status = Error{ErrorKind::kInput,
-                     fmt::format("lacks '{}': {}", attribute.name, describe_type(attribute))};
+                     fmt::format("is missing '{}': {}", attribute.name, describe_type(attribute))};
     }
     if (status.ok()) continue;
     Error error = status.error();

@@ -11,7 +11,8 @@ namespace {
 
 const MjcfAttribute& known(const Node& node, std::string_view attribute) {
   const MjcfAttribute* found = node.element->find(attribute);
-  GLOAM_CHECK(found != nullptr, "a generated class names an attribute that its element lacks");
+  GLOAM_CHECK(found != nullptr,
+              "a generated class uses an attribute that its element does not have");
   return *found;
 }
 
@@ -136,7 +137,7 @@ std::vector<int> Element::places_of(std::string_view attribute,
 
 Element Element::add_known(std::string_view tag) {
   Result<std::shared_ptr<Node>> child = node_->add(tag, node_->loc);
-  GLOAM_CHECK(child.ok(), "a generated class names an element that may not stand there");
+  GLOAM_CHECK(child.ok(), "a generated class uses an element that is not allowed there");
   return Element(std::move(child).value());
 }
 

@@ -15,7 +15,8 @@ void find_lines(const Element& made, const Element& written, std::vector<int>* l
   if (line >= lines->size()) lines->resize(line + 1);
   if ((*lines)[line] == 0) (*lines)[line] = made.loc().line;
   const std::vector<Element> here = made.children(), there = written.children();
-  GLOAM_CHECK(here.size() == there.size(), "a document is not read as it was written");
+  GLOAM_CHECK(here.size() == there.size(),
+              "a document does not match its source after a round trip");
   for (size_t i = 0; i < here.size(); ++i) find_lines(here[i], there[i], lines);
 }
 

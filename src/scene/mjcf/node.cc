@@ -14,7 +14,7 @@ namespace {
 
 Error wrong_tag(const MjcfElement& above, std::string_view tag, const SourceLoc& loc) {
   const MjcfSchema& schema = MjcfSchema::get();
-  Error error{ErrorKind::kInput, fmt::format("<{:.60}> may not stand in <{}>", tag, above.name),
+  Error error{ErrorKind::kInput, fmt::format("<{:.60}> is not allowed in <{}>", tag, above.name),
               loc};
   const std::vector<std::string> here = schema.tags_in(above);
   if (const std::string near = nearest_name(tag, here); !near.empty()) {
@@ -26,9 +26,9 @@ Error wrong_tag(const MjcfElement& above, std::string_view tag, const SourceLoc&
     if (element.name == tag && element.parent != nullptr)
       places.insert(fmt::format("<{}>", element.parent->name));
   }
-  error.hint = !places.empty() ? fmt::format("it stands in {}", fmt::join(places, ", "))
-               : here.empty()  ? "nothing stands in it"
-                               : fmt::format("there may be {}", fmt::join(here, ", "));
+  error.hint = !places.empty() ? fmt::format("it is allowed in {}", fmt::join(places, ", "))
+               : here.empty()  ? "no elements are allowed there"
+                               : fmt::format("allowed elements: {}", fmt::join(here, ", "));
   return error;
 }
 
@@ -56,7 +56,7 @@ Result<std::shared_ptr<Node>> Node::add(std::string_view tag, const SourceLoc& p
   if (below == nullptr) return wrong_tag(*element, tag, place);
   if (below->times == '?' &&
       std::ranges::any_of(children, [&](const auto& child) { return child->element == below; }))
-    return Error{ErrorKind::kInput, fmt::format("<{}> stands twice in <{}>", tag, this->tag()),
+    return Error{ErrorKind::kInput, fmt::format("<{}> appears twice in <{}>", tag, this->tag()),
                  place};
   auto child = std::make_shared<Node>();
   child->element = below;
@@ -85,7 +85,7 @@ Result<const MjcfAttribute*> attribute_of(const MjcfElement& element, std::strin
               loc};
   const std::string near = nearest_name(name, names);
   error.hint = !near.empty()   ? fmt::format("did you mean '{}'?", near)
-               : names.empty() ? "it has none"
+               : names.empty() ? "it has no attributes"
                                : fmt::format("it has {}", fmt::join(names, ", "));
   return error;
 }

@@ -75,7 +75,7 @@ MjcfSchema::MjcfSchema() {
     elements_.push_back(std::move(element));
     if (slash == std::string_view::npos) continue;
     MjcfElement* parent = const_cast<MjcfElement*>(find(row.path.substr(0, slash)));
-    GLOAM_CHECK(parent != nullptr, "an element of the grammar stands before its parent");
+    GLOAM_CHECK(parent != nullptr, "an element of the grammar precedes its parent");
     elements_.back().parent = parent;
     parent->children.push_back(&elements_.back());
   }
@@ -117,14 +117,14 @@ Status check_mjcf_value(const MjcfAttribute& attribute, std::string_view text) {
   if (attribute.type == kString) return {};
   const std::vector<std::string_view> words = split_words(text);
   const auto complain = [&](std::string_view what) {
-    return Error{ErrorKind::kInput, fmt::format("{}=\"{:.60}\" {}; it takes {}", attribute.name,
+    return Error{ErrorKind::kInput, fmt::format("{}=\"{:.60}\" {}; expected {}", attribute.name,
                                                 text, what, describe_type(attribute))};
   };
   if (attribute.type == kKeyword) {
     const std::vector<std::string_view> known = split_words(attribute.keywords);
     for (const std::string_view word : words) {
       if (std::ranges::find(known, word) != known.end()) continue;
-      Error error = complain("is not a keyword of it");
+      Error error = complain("is not a valid keyword");
       const std::vector<std::string> names(known.begin(), known.end());
       if (const std::string near = nearest_name(word, names); !near.empty())
         error.hint = fmt::format("did you mean '{}'?", near);
@@ -133,7 +133,7 @@ Status check_mjcf_value(const MjcfAttribute& attribute, std::string_view text) {
   } else {
     for (const std::string_view word : words) {
       if (attribute.type == kInt ? !read_number<int>(word) : !read_number<double>(word))
-        return complain(fmt::format("has '{:.30}', which is no {}number", word,
+        return complain(fmt::format("contains '{:.30}', which is not a {}number", word,
                                     attribute.type == kInt ? "whole " : ""));
     }
   }

@@ -67,7 +67,7 @@ std::map<std::pair<mjtObj, int>, const MjcfElement*> all_variants() {
     if (type == mjOBJ_UNKNOWN || element.find("name") == nullptr) continue;
     const Result<mjcf::OwnedSpec> spec =
         mjcf::parse_document(mjcf::make_specimen(element).document);
-    GLOAM_CHECK(spec.ok(), "MuJoCo does not read a specimen");
+    GLOAM_CHECK(spec.ok(), "MuJoCo cannot parse a specimen");
     if (mjsElement* read = specimen_of(spec->get(), element))
       variants.emplace(std::pair(type, variant_of(read)), &element);
   }

@@ -65,7 +65,7 @@ Status set_spec_only(const mjcf::Document& document, mjSpec* spec) {
         type == mjOBJ_UNKNOWN || name.empty() ? nullptr : mjs_findElement(spec, type, name.c_str());
     if (type != mjOBJ_UNKNOWN && target == nullptr)
       return Error{ErrorKind::kInput,
-                   fmt::format("<{}> needs a name for its '{}'", element.tag(), attribute.name),
+                   fmt::format("<{}> needs a name to set its '{}'", element.tag(), attribute.name),
                    element.loc()};
     for (const SpecObject& object :
          target == nullptr ? spec_objects(spec) : spec_objects_of(target)) {
@@ -82,9 +82,10 @@ Status set_spec_only(const mjcf::Document& document, mjSpec* spec) {
       error.loc = element.loc();
       return error;
     }
-    return Error{ErrorKind::kUnsupported,
-                 fmt::format("this MuJoCo has no {}.{}", attribute.spec_owner, attribute.name),
-                 element.loc()};
+    return Error{
+        ErrorKind::kUnsupported,
+        fmt::format("this version of MuJoCo has no {}.{}", attribute.spec_owner, attribute.name),
+        element.loc()};
   };
   return for_each_spec_only(document.root(), set);
 }

@@ -225,7 +225,7 @@ Status AttributeValue::set(mjSpec* spec, mjsElement* target) const {
   }
   if (any) return {};
   return Error{ErrorKind::kUnsupported,
-               fmt::format("'{}' of <{}> cannot be changed once the model is read",
+               fmt::format("'{}' of <{}> cannot be changed after the model has been loaded",
                            l.attribute->name, l.element->name)};
 }
 

@@ -36,13 +36,13 @@ class SpecimenFiles {
 void set_all(Element element, const Attributes& values) {
   for (const auto& [name, value] : values) {
     const Status status = element.set(name, value);
-    GLOAM_CHECK(status.ok(), "a specimen's attribute is not what its element takes");
+    GLOAM_CHECK(status.ok(), "an attribute of a specimen does not fit its element");
   }
 }
 
 Element add(Element above, std::string_view tag) {
   Result<Element> added = above.add(tag);
-  GLOAM_CHECK(added.ok(), "a specimen's element may not stand where it is wanted");
+  GLOAM_CHECK(added.ok(), "an element of a specimen is not allowed at its place");
   return *added;
 }
 

@@ -60,7 +60,7 @@ class TomlReader {
         for (const toml::node& item : *array) {
           if (!item.is_table())
             return Error{ErrorKind::kInput,
-                         fmt::format("'{}' holds tables and other things", key.str()),
+                         fmt::format("'{}' mixes tables and other values", key.str()),
                          loc_of(item, file_)};
           below.push_back({std::string(key.str()), item.as_table()});
         }
@@ -93,8 +93,8 @@ class TomlReader {
     GLOAM_TRY(const MjcfAttribute* attribute, attribute_of(*to->element, key, loc));
     const std::optional<std::string> text = mjcf_text(node);
     if (!text)
-      return Error{ErrorKind::kInput, fmt::format("'{}' takes {}", key, describe_type(*attribute)),
-                   loc};
+      return Error{ErrorKind::kInput,
+                   fmt::format("'{}' must be {}", key, describe_type(*attribute)), loc};
     const std::string value = mjcf_keyword(*attribute, *text);
     if (Status status = check_mjcf_value(*attribute, value); !status.ok()) {
       Error error = to->refused(status.error());
@@ -176,14 +176,15 @@ Status read_toml(std::string_view text, const std::string& file, Node* root) {
   GLOAM_TRY(const toml::table table, parse_toml(text, file));
   const toml::table* top = table["mujoco"].as_table();
   if (top == nullptr)
-    return Error{ErrorKind::kInput,
-                 "there is no [mujoco]",
-                 {file, 0, 0},
-                 "a model in TOML is all below [mujoco], a scene has [[robot]] (docs/scenes.md)"};
+    return Error{
+        ErrorKind::kInput,
+        "there is no [mujoco]",
+        {file, 0, 0},
+        "a TOML model has only the table [mujoco]; a scene has [[robot]] (docs/scenes.md)"};
   for (const auto& [key, node] : table) {
     if (key.str() != "mujoco")
-      return Error{ErrorKind::kInput, fmt::format("'{}' stands beside [mujoco]", key.str()),
-                   loc_of(node, file), "a model in TOML is all below [mujoco]"};
+      return Error{ErrorKind::kInput, fmt::format("'{}' is outside of [mujoco]", key.str()),
+                   loc_of(node, file), "a TOML model has only the table [mujoco]"};
   }
   root->loc = loc_of(*top, file);
   return TomlReader(file).read(*top, root, 1);

@@ -27,9 +27,9 @@ class XmlReader {
       GLOAM_TRY(const MjcfAttribute* known, attribute_of(*to->element, attribute.name(), to->loc));
       if (known->is_spec_only())
         return to->refused({ErrorKind::kInput,
-                            fmt::format("has '{}', which MJCF has not", attribute.name()),
+                            fmt::format("has '{}', which is not in MJCF", attribute.name()),
                             {},
-                            "models in TOML have it"});
+                            "it is available in TOML models"});
       if (Status status = check_mjcf_value(*known, attribute.value()); !status.ok())
         return to->refused(status.error());
       to->set(*known, attribute.value());
@@ -84,7 +84,7 @@ Status read_xml(std::string_view text, const std::string& file, Node* root) {
   const pugi::xml_node top = document.document_element();
   if (root->element->name != top.name())
     return Error{ErrorKind::kInput,
-                 fmt::format("the top element is <{:.40}>, and MJCF's is <{}>", top.name(),
+                 fmt::format("the root element is <{:.40}>, but MJCF starts with <{}>", top.name(),
                              root->element->name),
                  reader.loc(top)};
   root->loc = reader.loc(top);

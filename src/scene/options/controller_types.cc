@@ -58,11 +58,11 @@ bool has_controller_option(std::string_view type, std::string_view key) {
 
 Status add_controller_type(const std::string& name) {
   if (!is_identifier(name))
-    return Error{ErrorKind::kUsage, fmt::format("'{:.80}' is no name of a controller", name)};
+    return Error{ErrorKind::kUsage, fmt::format("'{:.80}' is not a valid controller name", name)};
   ControllerTypes& types = controller_types_table();
   const std::lock_guard lock(types.mutex);
   if (std::ranges::find(types.rows, name, &ControllerType::name) != types.rows.end())
-    return Error{ErrorKind::kUsage, fmt::format("there is a controller '{}' already", name)};
+    return Error{ErrorKind::kUsage, fmt::format("there is already a controller '{}'", name)};
   types.rows.push_back({name, {"goals", "params"}});
   return {};
 }

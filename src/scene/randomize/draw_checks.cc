@@ -26,7 +26,7 @@ bool DrawChecks::begin_example(bool is_pattern) {
 void DrawChecks::check_sizes(const std::string& path, size_t n,
                              std::initializer_list<size_t> given) {
   for (const size_t count : given)
-    if (count != 1 && count != n) fail(fmt::format("'{}' is {} numbers, not {}", path, n, count));
+    if (count != 1 && count != n) fail(fmt::format("'{}' has {} numbers, not {}", path, n, count));
 }
 
 void DrawChecks::check_order(const Numbers& a, const Numbers& b, bool round) {
@@ -35,7 +35,7 @@ void DrawChecks::check_order(const Numbers& a, const Numbers& b, bool round) {
   for (size_t i = 0; i < std::max(a.size(), b.size()); ++i) {
     const double x = a[a.size() == 1 ? 0 : i], y = b[b.size() == 1 ? 0 : i];
     if (kind == Distribution::kLogUniform && std::min(x, y) <= 0)
-      fail("log_uniform is for numbers above 0");
+      fail("log_uniform requires numbers above 0");
     if (is_range && x > y && !round) fail("the first value is above the second");
     if (kind == Distribution::kNormal && y < 0) fail("the standard deviation is negative");
   }
@@ -43,7 +43,7 @@ void DrawChecks::check_order(const Numbers& a, const Numbers& b, bool round) {
 
 bool DrawChecks::check_override_shape(const Numbers& a, const Numbers& b) {
   if (a.size() != b.size() && a.size() != 1 && b.size() != 1)
-    fail(fmt::format("one value is {} numbers, the other {}", a.size(), b.size()));
+    fail(fmt::format("one value has {} numbers, the other {}", a.size(), b.size()));
   else
     check_order(a, b, false);
   return status_->ok();
@@ -54,7 +54,7 @@ const toml::node* DrawChecks::parse_value(size_t index, toml::table* table) {
   Result<toml::table> parsed = parse_toml("v = " + text, o_.loc.file);
   if (parsed.ok()) *table = *std::move(parsed);
   const toml::node* node = table->get("v");
-  if (node == nullptr) fail(fmt::format("'{}' is no value", text));
+  if (node == nullptr) fail(fmt::format("'{}' is not a valid value", text));
   return node;
 }
 
@@ -63,7 +63,7 @@ std::optional<Numbers> DrawChecks::parse_time(size_t index) {
   const toml::node* node = parse_value(index, &table);
   if (node == nullptr) return std::nullopt;
   if (const auto time = read_time(*node)) return numbers_of(*time);
-  return fail(fmt::format("{} is no time of day", distribution_of(o_).values[index].text),
+  return fail(fmt::format("{} is not a time of day", distribution_of(o_).values[index].text),
               "write it as 14:30:00");
 }
 
@@ -72,7 +72,7 @@ std::optional<Numbers> DrawChecks::parse_date(size_t index) {
   const toml::node* node = parse_value(index, &table);
   if (node == nullptr) return std::nullopt;
   if (const auto date = read_date(*node)) return numbers_of(*date);
-  return fail(fmt::format("{} is no date", distribution_of(o_).values[index].text),
+  return fail(fmt::format("{} is not a date", distribution_of(o_).values[index].text),
               "write it as 2026-06-21");
 }
 
@@ -92,8 +92,8 @@ std::optional<Numbers> DrawChecks::parse_numbers(size_t index) {
     for (const toml::node& n : *array) good = good && take(n);
   }
   if (good) return numbers;
-  return fail(
-      fmt::format("{} is neither a number nor numbers", distribution_of(o_).values[index].text));
+  return fail(fmt::format("{} is neither a number nor an array of numbers",
+                          distribution_of(o_).values[index].text));
 }
 
 }  // namespace gloam

@@ -69,8 +69,8 @@ class DrawChecks {
   bool check_all(const std::string& path, std::string_view key, const std::optional<T>& member,
                  const FieldRule& rule) {
     if (!member && o_.operation != "set" && !only_checks()) {
-      fail(fmt::format("'{}' has no value that could be changed", path),
-           "give it one, or operation = \"set\"");
+      fail(fmt::format("'{}' has no value to change", path),
+           "set a value, or use operation = \"set\"");
       return false;
     }
     return check_all(path, key, member.value_or(T{}), rule);
@@ -84,7 +84,7 @@ class DrawChecks {
       for (const TomlText& value : distribution.values)
         if (T copy = member; !read(key, value.text, copy, rule)) return false;
     } else if constexpr (!kIsNumbers<T>) {
-      fail(fmt::format("'{}' is no number", path), "give the values to choose from: choice");
+      fail(fmt::format("'{}' is not a number", path), "list the possible values with 'choice'");
     } else if (distribution.kind == Distribution::kChoice) {
       for (size_t i = 0; i < o_.choice.size() && status_->ok(); ++i)
         if (const std::optional<Numbers> value = parse<T>(i))
@@ -112,7 +112,8 @@ class DrawChecks {
       T copy = member;
       if (!read(key, value_text(v, member), copy, rule)) return;
     }
-    if (whole && std::ceil(a[0]) > std::floor(b[0])) fail("there is no integer between");
+    if (whole && std::ceil(a[0]) > std::floor(b[0]))
+      fail("there is no integer between the two values");
   }
 
   template <class T>
@@ -129,7 +130,7 @@ class DrawChecks {
   bool read(std::string_view key, const std::string& value, T& member, const FieldRule& rule) {
     const Result<toml::table> parsed = parse_toml(fmt::format("{} = {}", key, value), o_.loc.file);
     if (!parsed.ok()) {
-      fail(fmt::format("'{}' is no value", value));
+      fail(fmt::format("'{}' is not a valid value", value));
       return false;
     }
     Status read;

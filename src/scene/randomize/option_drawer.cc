@@ -10,7 +10,7 @@ namespace gloam {
 std::optional<std::string> Drawer::draw_override() {
   Dice dice = dice_for(o_.option);
   if (o_.operation != "set")
-    return fail("an override cannot be added to or scaled", "draw its value: operation = \"set\"");
+    return fail("an override cannot be added to or scaled", "use operation = \"set\"");
   if (!o_.choice.empty()) return o_.choice[choose(o_, &dice)].text;
   std::optional<Numbers> low = parse<double>(0), high = parse<double>(1);
   if (!low || !high) return std::nullopt;

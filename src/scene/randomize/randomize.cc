@@ -37,7 +37,7 @@ Status add_override(const RandomizeOptions& o, const std::string& value,
   const size_t before = overrides->size();
   if (table != nullptr) GLOAM_TRY_STATUS(read_overrides(*table, o.loc.file, overrides));
   if (overrides->size() == before)
-    return Error{ErrorKind::kInput, "it names no attribute", o.loc,
+    return Error{ErrorKind::kInput, "it does not name an attribute", o.loc,
                  "as in override.ROBOT.joint.NAME.damping"};
   for (size_t i = before; i < overrides->size(); ++i) (*overrides)[i].loc = o.loc;
   return {};
@@ -70,7 +70,7 @@ struct Draws {
     if (names[0] == "override") return blamed(o, draw_override(o, &drawer, scene, &drawn, status));
     walk_options(names, o.loc, scene, &drawer, &status);
     if (warns && status.ok() && drawer.fitting() == 0)
-      log_warning("{}:{}: [[randomize]] of '{}' fits nothing, so nothing is drawn", o.loc.file,
+      log_warning("{}:{}: [[randomize]] of '{}' matches nothing and has no effect", o.loc.file,
                   o.loc.line, o.option);
     return blamed(o, status);
   }
@@ -94,14 +94,14 @@ Status check_form(const RandomizeOptions& o) {
   };
   if (!o.uniform.empty() + !o.log_uniform.empty() + !o.normal.empty() + !o.choice.empty() != 1)
     return bad(
-        "needs one distribution",
+        "needs exactly one distribution",
         "uniform = [from, to], log_uniform = [from, to], normal = [mean, sd] or choice = […]");
   if (o.choice.empty() && distribution_of(o).values.size() != 2)
-    return bad("needs two values", "as in uniform = [from, to]; of a vector [[…], […]]");
+    return bad("needs two values", "as in uniform = [from, to], or [[…], […]] for a vector");
   double sum = 0;
   for (const double weight : o.weights) sum += weight;
   if (!o.weights.empty() && (o.weights.size() != o.choice.size() || sum <= 0))
-    return bad("has other than one weight for each choice, or none above 0");
+    return bad("needs one weight for each choice, and at least one above 0");
   return {};
 }
 

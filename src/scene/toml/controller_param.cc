@@ -12,7 +12,7 @@ Result<std::vector<double>> controller_param(const ControllerOptions& options,
   if (options.params.text.empty()) return numbers;
   const auto fault = [&](std::string_view what) {
     return Error{ErrorKind::kInput, fmt::format("'params' of a controller: {}", what), options.loc,
-                 "give a table of numbers, as params = { gain = 2.5, offset = [0, 0.1] }"};
+                 "use a table of numbers, as in params = { gain = 2.5, offset = [0, 0.1] }"};
   };
   toml::table document;
   try {
@@ -34,7 +34,7 @@ Result<std::vector<double>> controller_param(const ControllerOptions& options,
     for (const toml::node& one : *array) ok = ok && add(one);
   else
     ok = add(*node);
-  if (!ok) return fault(fmt::format("'{:.80}' is no number", key));
+  if (!ok) return fault(fmt::format("'{:.80}' is not a number", key));
   return numbers;
 }
 

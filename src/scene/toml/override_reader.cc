@@ -25,7 +25,7 @@ class OverrideReader {
   }
 
   Error wanted(const std::string& what, const SourceLoc& loc) const {
-    return {ErrorKind::kInput, "an override is a table", loc, "write " + what};
+    return {ErrorKind::kInput, "an override must be a table", loc, "write " + what};
   }
 
  private:
@@ -64,8 +64,11 @@ class OverrideReader {
     override.attribute = attribute;
     override.value = text.value_or("");
     if (!text)
-      return Error{ErrorKind::kInput, fmt::format("'{}' is no value of an attribute", attribute),
-                   override.loc};
+      return Error{
+          ErrorKind::kInput,
+          fmt::format("'{}' must be a number, a string, true or false, or an array of these",
+                      attribute),
+          override.loc};
     out_->push_back(std::move(override));
     return {};
   }

@@ -58,7 +58,7 @@ Status set_option(Scene& scene, std::string_view path, std::string_view toml_val
       status = read_overrides(*table, where, &changed.overrides);
     else
       status = Error{ErrorKind::kUsage,
-                     "'override' needs more",
+                     "'override' is incomplete",
                      {where, 0, 0},
                      "as in override.ROBOT.joint.NAME.damping"};
   } else {

@@ -24,7 +24,7 @@ const char* type_name(const toml::node& node) {
     case toml::node_type::integer:
       return "an integer";
     case toml::node_type::floating_point:
-      return "a number with a point";
+      return "a floating-point number";
     case toml::node_type::boolean:
       return "true or false";
     default:
@@ -83,7 +83,7 @@ bool ValueReader::check_text(const toml::node& node, const std::string& key,
     return static_cast<unsigned char>(c) < 0x20 || c == 0x7f;
   });
   if (control) {
-    fail(node, fmt::format("'{}' holds a control character", key));
+    fail(node, fmt::format("'{}' contains a control character", key));
     return false;
   }
   if (rule.required && value.empty()) {
@@ -192,14 +192,15 @@ void ValueReader::read(const toml::node& node, const std::string& key, std::arra
 void ValueReader::read(const toml::node& node, const std::string& key, CalendarDate& out,
                        const FieldRule&) {
   const auto date = read_date(node);
-  if (!date) return fail(node, fmt::format("'{}' is no date", key), "write it as 2026-06-21");
+  if (!date) return fail(node, fmt::format("'{}' is not a date", key), "write it as 2026-06-21");
   out = *date;
 }
 
 void ValueReader::read(const toml::node& node, const std::string& key, ClockTime& out,
                        const FieldRule&) {
   const auto time = read_time(node);
-  if (!time) return fail(node, fmt::format("'{}' is no time of day", key), "write it as 14:30:00");
+  if (!time)
+    return fail(node, fmt::format("'{}' is not a time of day", key), "write it as 14:30:00");
   out = *time;
 }
 
@@ -224,7 +225,7 @@ void ValueReader::read(const toml::node& node, const std::string& key, Quat& out
   if (!read_numbers(node, key, v, rule)) return;
   if (!(largest_of(v) > 1e-12)) {
     return fail(node, fmt::format("'{}' is zero, which is not a rotation", key),
-                "a quaternion w, x, y, z; no rotation is [1, 0, 0, 0]");
+                "use a quaternion [w, x, y, z]; the identity is [1, 0, 0, 0]");
   }
   out = unit_quaternion(v);
 }

@@ -47,7 +47,7 @@ struct OptionGetter {
     writer(key, member, rule);
     const toml::node* node = table.get(key);
     if (node == nullptr && status->ok())
-      *status = Error{ErrorKind::kInput, fmt::format("'{}' is not given", path)};
+      *status = Error{ErrorKind::kInput, fmt::format("'{}' is not set", path)};
     if (node != nullptr) *value = toml_text(*node);
   }
 };

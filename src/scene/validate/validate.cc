@@ -52,7 +52,7 @@ class FieldChecker {
   void check(std::string_view, bool, const FieldRule&) {}
   void check(std::string_view, const TomlText&, const FieldRule&) {}
   void check(std::string_view key, const Rational& value, const FieldRule& rule) {
-    if (value.den <= 0) return fail(key, "has no positive denominator");
+    if (value.den <= 0) return fail(key, "must have a positive denominator");
     number(key, value.value(), rule);
   }
   void check(std::string_view key, const Vec3& v, const FieldRule& rule) {
@@ -60,7 +60,7 @@ class FieldChecker {
       number(key, x, rule);
       // A mesh's size: what is below zero mirrors it.
       if (status_->ok() && rule.one_for_three && !(std::abs(x) >= 1e-6))
-        fail(key, "has a number that is zero or nearly so");
+        fail(key, "has a number that is zero or nearly zero");
     }
   }
   void check(std::string_view key, const std::array<double, 2>& v, const FieldRule& rule) {
@@ -125,7 +125,7 @@ Status refuse_duplicates(const std::vector<Options>& options, std::string_view k
     const auto [first, is_new] = seen.emplace(option.name, option.loc);
     if (is_new) continue;
     const std::string hint =
-        first->second.line > 0 ? fmt::format("the first is in line {}", first->second.line) : "";
+        first->second.line > 0 ? fmt::format("the first is on line {}", first->second.line) : "";
     return Error{ErrorKind::kInput, fmt::format("there are two {}s named '{}'", kind, option.name),
                  option.loc, hint};
   }
@@ -155,14 +155,14 @@ Status validate_camera(const CameraOptions& camera) {
   const auto both = [&](const char* a, const char* b) {
     return Error{ErrorKind::kInput,
                  fmt::format("camera '{}' has both '{}' and '{}'", camera.name, a, b), camera.loc,
-                 "give one of them"};
+                 "specify only one of them"};
   };
   if (camera.look_at && camera.orientation) return both("look_at", "orientation");
   if (!camera.body.empty() && !camera.track.empty()) return both("body", "track");
   if (camera.look_at && *camera.look_at == camera.position) {
     return Error{ErrorKind::kInput,
-                 fmt::format("camera '{}' looks at the point it stands in", camera.name),
-                 camera.loc, "move 'look_at' or 'position'"};
+                 fmt::format("camera '{}' looks at its own position", camera.name), camera.loc,
+                 "change 'look_at' or 'position'"};
   }
   return validate_lens(camera);
 }
@@ -171,13 +171,15 @@ Status validate_render(const RenderOptions& render) {
   if (!render.error) return {};
   if (render.tier != "path") {
     return Error{ErrorKind::kInput,
-                 fmt::format("'error' of [render] is for the path tier, not for '{}'", render.tier),
-                 render.loc, "give 'spp' alone, or tier = \"path\""};
+                 fmt::format("'error' of [render] requires the path tier, not '{}'", render.tier),
+                 render.loc, "use 'spp' alone, or set tier = \"path\""};
   }
   if (render.samples() < 16) {
     return Error{ErrorKind::kInput,
-                 fmt::format("'spp' of [render] is {}: too few to tell an error", render.samples()),
-                 render.loc, "with 'error' it is the most samples of a pixel: 16 … 65536"};
+                 fmt::format("'spp' of [render] is {}, which is too few to estimate an error",
+                             render.samples()),
+                 render.loc,
+                 "with 'error' it is the maximum number of samples per pixel: 16 … 65536"};
   }
   return {};
 }
@@ -234,9 +236,9 @@ Status validate_scene(const Scene& scene) {
       const VelocityGoal& goal = robot.controller.goals[i];
       if (goal.time >= robot.controller.goals[i - 1].time) continue;
       return Error{ErrorKind::kInput,
-                   fmt::format("goal at {} s comes after the goal at {} s", goal.time,
+                   fmt::format("the goal at {} s follows the goal at {} s", goal.time,
                                robot.controller.goals[i - 1].time),
-                   goal.loc, "order the goals by time"};
+                   goal.loc, "sort the goals by time"};
     }
   }
   return {};

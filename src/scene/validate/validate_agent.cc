@@ -16,18 +16,18 @@ Error agent_error(const AgentOptions& agent, std::string what, std::string hint)
 Status check_behavior(const AgentOptions& agent) {
   const size_t least = agent.behavior == "route" ? 1 : agent.behavior == "spline" ? 2 : 0;
   if (agent.route.size() < least) {
-    return agent_error(
-        agent, fmt::format("is to follow a {} of {} points", agent.behavior, agent.route.size()),
-        fmt::format("give it at least {} in 'route'", least));
+    return agent_error(agent,
+                       fmt::format("follows a {} of {} points", agent.behavior, agent.route.size()),
+                       fmt::format("list at least {} in 'route'", least));
   }
   if (agent.behavior == "tree" && agent.tree.empty())
-    return agent_error(agent, "has no 'tree'", "give it a file of BehaviorTree.CPP's XML");
+    return agent_error(agent, "has no 'tree'", "set it to a BehaviorTree.CPP XML file");
   if (agent.behavior != "tree" && !agent.tree.empty())
-    return agent_error(agent, fmt::format("has a 'tree' and the behavior '{}'", agent.behavior),
-                       "say behavior = \"tree\", or leave the tree out");
+    return agent_error(agent, fmt::format("has a 'tree', but the behavior '{}'", agent.behavior),
+                       "set behavior = \"tree\", or remove 'tree'");
   if (agent.kind != "person" && agent.height)
-    return agent_error(agent, fmt::format("is a {} with a 'height'", agent.kind),
-                       "only people have one");
+    return agent_error(agent, fmt::format("is a {} and cannot have a 'height'", agent.kind),
+                       "only people have a height");
   return {};
 }
 
@@ -41,9 +41,10 @@ Status validate_agents(const Scene& scene) {
   const auto take = [&](const std::string& name, const char* kind, const SourceLoc& loc) -> Status {
     const auto [found, is_new] = taken.emplace(name, kind);
     if (is_new) return {};
-    return Error{ErrorKind::kInput,
-                 fmt::format("{} '{}' has the name of a {}", kind, name, found->second), loc,
-                 "rename one of them"};
+    return Error{
+        ErrorKind::kInput,
+        fmt::format("{} '{}' has the same name as an existing {}", kind, name, found->second), loc,
+        "rename one of them"};
   };
   for (const AgentOptions& agent : scene.agents) {
     GLOAM_TRY_STATUS(take(agent.name, "agent", agent.loc));
@@ -51,7 +52,7 @@ Status validate_agents(const Scene& scene) {
   }
   for (const CrowdOptions& crowd : scene.crowds)
     for (int i = 0; i < crowd.count; ++i)
-      GLOAM_TRY_STATUS(take(fmt::format("{}{}", crowd.name, i), "one of a crowd", crowd.loc));
+      GLOAM_TRY_STATUS(take(fmt::format("{}{}", crowd.name, i), "crowd member", crowd.loc));
   return {};
 }
 

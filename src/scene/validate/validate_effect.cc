@@ -11,9 +11,9 @@ template <class Source>
 Status check_times(const Source& source, const char* kind) {
   if (!source.stop || *source.stop > source.start) return {};
   return Error{ErrorKind::kInput,
-               fmt::format("{} '{}' stops at {} s and starts at {} s", kind, source.name,
+               fmt::format("{} '{}' stops at {} s, but starts at {} s", kind, source.name,
                            *source.stop, source.start),
-               source.loc, "'stop' comes after 'start'"};
+               source.loc, "'stop' must be later than 'start'"};
 }
 
 /// A box has a centre and edges, or is left to us.
@@ -23,7 +23,7 @@ Status check_box(const Options& options, const char* kind, const char* without) 
   return Error{ErrorKind::kInput,
                fmt::format("{} '{}' has a {} but no {}", kind, options.name,
                            options.size ? "size" : "position", options.size ? "position" : "size"),
-               options.loc, fmt::format("give both, or neither for {}", without)};
+               options.loc, fmt::format("specify both, or neither for {}", without)};
 }
 
 Status check_rotor(const RotorOptions& rotor) {
@@ -32,14 +32,14 @@ Status check_rotor(const RotorOptions& rotor) {
         ErrorKind::kInput,
         fmt::format("rotor '{}' has {} an actuator {} a site", rotor.name,
                     rotor.site.empty() ? "neither" : "both", rotor.site.empty() ? "nor" : "and"),
-        rotor.loc, "give one of them"};
+        rotor.loc, "specify exactly one of them"};
   }
   if (rotor.thrust.has_value() == rotor.site.empty()) {
-    return Error{
-        ErrorKind::kInput,
-        fmt::format("rotor '{}' has {}", rotor.name,
-                    rotor.thrust ? "a thrust beside its actuator's force" : "a site and no thrust"),
-        rotor.loc, "'thrust' goes with 'site'"};
+    return Error{ErrorKind::kInput,
+                 fmt::format("rotor '{}' has {}", rotor.name,
+                             rotor.thrust ? "a thrust in addition to its actuator's force"
+                                          : "a site but no thrust"),
+                 rotor.loc, "specify 'thrust' together with 'site'"};
   }
   return {};
 }
@@ -48,7 +48,7 @@ Status check_rotor(const RotorOptions& rotor) {
 
 Status validate_effects(const Scene& scene) {
   for (const GasOptions& gas : scene.gases) {
-    GLOAM_TRY_STATUS(check_box(gas, "gas", "the box that fits the scene"));
+    GLOAM_TRY_STATUS(check_box(gas, "gas", "a box that fits the scene"));
   }
   for (const FireOptions& fire : scene.fires) GLOAM_TRY_STATUS(check_times(fire, "fire"));
   for (const SmokeOptions& smoke : scene.smokes) GLOAM_TRY_STATUS(check_times(smoke, "smoke"));
@@ -56,9 +56,8 @@ Status validate_effects(const Scene& scene) {
   for (const DustOptions& dust : scene.dusts)
     GLOAM_TRY_STATUS(check_box(dust, "dust", "all ground in the gas"));
   if (scene.weather && scene.weather->where == "rooms" && !has_rooms(scene.environment)) {
-    return Error{ErrorKind::kInput,
-                 "weather hangs in rooms, and the scene is no generated building",
-                 scene.weather->loc, "a [[volume]] is a box of a medium anywhere"};
+    return Error{ErrorKind::kInput, "where = \"rooms\" of [weather] needs a generated building",
+                 scene.weather->loc, "use a [[volume]] to fill a box anywhere with a medium"};
   }
   return {};
 }

@@ -14,29 +14,29 @@ Status validate_imager(const std::string& camera, const ImagerOptions& imager) {
   if (imager.pixel) {
     const PixelOptions& pixel = *imager.pixel;
     if (pixel.bits == 0 && pixel.black_level > 0)
-      return wrong(camera, "'black_level' without 'bits'", pixel.loc,
-                   "numbers need a converter: give 'bits'");
+      return wrong(camera, "'black_level' needs 'bits'", pixel.loc, "set 'bits' of the converter");
     if (pixel.bits > 0 && pixel.black_level >= 1 << (pixel.bits - 1)) {
-      return wrong(camera,
-                   fmt::format("'black_level' is {}: half of the {} numbers or more",
-                               pixel.black_level, 1 << pixel.bits),
-                   pixel.loc, "a usual one is a sixteenth of the numbers");
+      return wrong(
+          camera,
+          fmt::format("'black_level' is {}, which is not below half of the {} pixel values",
+                      pixel.black_level, 1 << pixel.bits),
+          pixel.loc, "a typical black level is a sixteenth of the pixel values");
     }
   }
   if (imager.auto_exposure && imager.auto_exposure->min_ev100 > imager.auto_exposure->max_ev100)
-    return wrong(camera, "'min_ev100' is above 'max_ev100'", imager.auto_exposure->loc, "");
+    return wrong(camera, "'min_ev100' is greater than 'max_ev100'", imager.auto_exposure->loc, "");
   return {};
 }
 
 Status validate_stereo_depth(const std::string& camera, const StereoDepthOptions& depth) {
   if (depth.preset == "none" && !depth.baseline)
-    return wrong(camera, "a stereo_depth without 'baseline'", depth.loc,
-                 "give it, or a preset: d435, kinect");
+    return wrong(camera, "stereo_depth needs 'baseline'", depth.loc,
+                 "set it, or use a preset: d435, kinect");
   if (depth.baseline && *depth.baseline == 0)
     return wrong(camera, "a baseline of 0 m has no disparity", depth.loc, "");
   if (depth.min_range && depth.max_range && *depth.max_range > 0 &&
       *depth.min_range >= *depth.max_range)
-    return wrong(camera, "'min_range' is not below 'max_range'", depth.loc, "");
+    return wrong(camera, "'min_range' must be less than 'max_range'", depth.loc, "");
   return {};
 }
 
@@ -44,11 +44,10 @@ Status validate_rig(const RigOptions& rig, const SourceLoc& loc) {
   if (rig.look_at && rig.orientation)
     return Error{ErrorKind::kInput,
                  fmt::format("rig '{}' has both 'look_at' and 'orientation'", rig.name), loc,
-                 "give one of them"};
+                 "specify only one of them"};
   if (rig.look_at && *rig.look_at == rig.position)
-    return Error{ErrorKind::kInput,
-                 fmt::format("rig '{}' looks at the point it stands in", rig.name), loc,
-                 "move 'look_at' or 'position'"};
+    return Error{ErrorKind::kInput, fmt::format("rig '{}' looks at its own position", rig.name),
+                 loc, "change 'look_at' or 'position'"};
   return {};
 }
 
@@ -58,7 +57,8 @@ Status validate_sensing(const std::string& camera, const CameraSensing& sensing)
   if (sensing.imager) GLOAM_TRY_STATUS(validate_imager(camera, *sensing.imager));
   if (sensing.stereo_depth) GLOAM_TRY_STATUS(validate_stereo_depth(camera, *sensing.stereo_depth));
   if (sensing.thermal && sensing.thermal->min >= sensing.thermal->max)
-    return wrong(camera, "'min' of [camera.thermal] is not below 'max'", sensing.thermal->loc, "");
+    return wrong(camera, "'min' of [camera.thermal] must be less than 'max'", sensing.thermal->loc,
+                 "");
   return {};
 }
 

@@ -11,20 +11,20 @@ Status validate_lidar(const LidarOptions& lidar) {
   };
   if (lidar.wavelength && *lidar.wavelength != 905 && *lidar.wavelength != 1550) {
     return bad(fmt::format("has a wavelength of {} nm", *lidar.wavelength),
-               "media and materials know 905 and 1550");
+               "media and materials support only 905 and 1550");
   }
   if (lidar.min_range && lidar.max_range && !(*lidar.min_range < *lidar.max_range)) {
-    return bad(fmt::format("sees from {} m to {} m", *lidar.min_range, *lidar.max_range),
-               "'max_range' must be more than 'min_range'");
+    return bad(fmt::format("has a range from {} m to {} m", *lidar.min_range, *lidar.max_range),
+               "'max_range' must be greater than 'min_range'");
   }
   if (lidar.azimuth && !((*lidar.azimuth)[0] < (*lidar.azimuth)[1])) {
-    return bad(fmt::format("turns from {} to {} degrees", (*lidar.azimuth)[0], (*lidar.azimuth)[1]),
-               "'azimuth' is [from, to] with from < to");
+    return bad(fmt::format("scans from {} to {} degrees", (*lidar.azimuth)[0], (*lidar.azimuth)[1]),
+               "'azimuth' must be [from, to] with from < to");
   }
   constexpr size_t kMostRings = 4096;
   if (lidar.elevations && (lidar.elevations->empty() || lidar.elevations->size() > kMostRings)) {
     return bad(fmt::format("has {} rings", lidar.elevations->size()),
-               fmt::format("'elevations' holds 1 to {} angles", kMostRings));
+               fmt::format("'elevations' must contain 1 to {} angles", kMostRings));
   }
   return {};
 }

@@ -54,8 +54,8 @@ Status check_kind(const Kind& kind, const Keys& all, const Keys& given, const st
     if (holds(all, key) || holds(kind.may, key) || holds(kind.must, key)) continue;
     Keys usable = kind.must;
     usable.insert(usable.end(), kind.may.begin(), kind.may.end());
-    return Error{ErrorKind::kInput, fmt::format("{} has no '{}'", what, key), loc,
-                 fmt::format("it has {}", fmt::join(usable, ", "))};
+    return Error{ErrorKind::kInput, fmt::format("{} does not support '{}'", what, key), loc,
+                 fmt::format("it supports {}", fmt::join(usable, ", "))};
   }
   for (const std::string_view key : kind.must) {
     if (holds(given, key)) continue;
@@ -95,20 +95,20 @@ Status check_strength(const LightOptions& light, const Keys& given, const std::s
   }
   if (strengths.size() > 1) {
     return error(fmt::format("{} has both '{}' and '{}'", what, strengths[0], strengths[1]),
-                 "give one of them");
+                 "specify only one of them");
   }
   if (strengths.empty() && light.ies.empty()) {
     return error(fmt::format("{} has no strength", what),
-                 "give 'intensity' [cd], 'flux' [lm] or 'luminance' [cd/m²]");
+                 "specify 'intensity' [cd], 'flux' [lm] or 'luminance' [cd/m²]");
   }
   if (light.luminance && !is_area(light)) {
     if (!light.ies.empty()) {
       return error(fmt::format("{} has both 'luminance' and 'ies'", what),
-                   "give 'intensity' or 'flux', or leave the strength to the file");
+                   "specify 'intensity' or 'flux', or use the strength from the file");
     }
     if (light.radius.value_or(0) <= 0) {
       return error(fmt::format("{} has a luminance but no radius", what),
-                   "give 'radius', or its strength as 'intensity' or 'flux'");
+                   "specify 'radius', or its strength as 'intensity' or 'flux'");
     }
   }
   return {};
@@ -117,11 +117,11 @@ Status check_strength(const LightOptions& light, const Keys& given, const std::s
 Status check_pose(const LightOptions& light, const std::string& what) {
   if (light.look_at && light.orientation) {
     return Error{ErrorKind::kInput, fmt::format("{} has both 'look_at' and 'orientation'", what),
-                 light.loc, "give one of them"};
+                 light.loc, "specify only one of them"};
   }
   if (light.look_at && *light.look_at == light.position) {
-    return Error{ErrorKind::kInput, fmt::format("{} points at the point it stands in", what),
-                 light.loc, "move 'look_at' or 'position'"};
+    return Error{ErrorKind::kInput, fmt::format("{} points at its own position", what), light.loc,
+                 "change 'look_at' or 'position'"};
   }
   return {};
 }
@@ -134,10 +134,11 @@ Status check_motion(const LightMotionOptions& motion, const std::string& what,
   };
   if (motion.spin.has_value() == motion.sway.has_value()) {
     return error(motion.spin ? "has both 'spin' and 'sway'" : "has neither 'spin' nor 'sway'",
-                 "give one of them");
+                 "specify exactly one of them");
   }
-  if (motion.cord && motion.spin) return error("has 'spin' and 'cord'", "'cord' goes with 'sway'");
-  if (motion.axis == Vec3{}) return error("has an axis without a direction", "up is [0, 0, 1]");
+  if (motion.cord && motion.spin)
+    return error("has both 'spin' and 'cord'", "'cord' requires 'sway'");
+  if (motion.axis == Vec3{}) return error("has an axis of length 0", "up is [0, 0, 1]");
   return {};
 }
 
@@ -174,21 +175,23 @@ Status validate_light(const LightOptions& light) {
     GLOAM_TRY_STATUS(check_motion(*light.motion, what, own.file.empty() ? light.loc : own));
   }
   if (light.color && light.temperature)
-    return error(fmt::format("{} has both 'color' and 'temperature'", what), "give one of them");
+    return error(fmt::format("{} has both 'color' and 'temperature'", what),
+                 "specify only one of them");
   if (is_black(light.color)) {
     return error(fmt::format("{} has the colour black, which has no hue", what),
-                 "a lamp that is off has the strength 0");
+                 "to turn a lamp off, set its strength to 0");
   }
   if (is_area(light) && light.radius.value_or(1) < kSmallestLength)
     return error(fmt::format("{} has a radius of {} m", what, *light.radius));
   if (is_area(light) && !light.casts_shadow) {
-    return error(fmt::format("{} cannot shine without shadows", what),
-                 "point, spot and directional lights can");
+    return error(fmt::format("{} always casts shadows", what),
+                 "only point, spot and directional lights can do without");
   }
   if (light.type == "spot" && light.angle && *light.angle <= 0)
-    return error(fmt::format("{} has a cone of 0 degrees", what), "'angle' is its half angle");
+    return error(fmt::format("{} has a cone of 0 degrees", what),
+                 "'angle' is the half angle of the cone");
   if (light.type == "directional" && light.angle.value_or(0) > 90)
-    return error(fmt::format("{} is {} degrees wide; at most 90", what, *light.angle));
+    return error(fmt::format("{} is {} degrees wide; the maximum is 90", what, *light.angle));
   return {};
 }
 
@@ -199,48 +202,48 @@ Status validate_sky(const SkyOptions& sky) {
   const Keys given = given_keys(sky);
   if (given.empty()) {
     return error("[sky] is empty",
-                 "give 'file', 'luminance', 'sun_elevation', or 'date', 'time', 'latitude' and "
+                 "specify 'file', 'luminance', 'sun_elevation', or 'date', 'time', 'latitude' and "
                  "'longitude'");
   }
   if (!sky.file.empty()) {
     if (sky.scale && sky.illuminance)
-      return error("[sky] has both 'scale' and 'illuminance'", "give one of them");
+      return error("[sky] has both 'scale' and 'illuminance'", "specify only one of them");
     return check_kind({"file", {"scale", "illuminance", "turn"}, {"file"}}, {}, given,
                       "a [sky] from a file", sky.loc);
   }
   if (sky.luminance) {
     if (is_black(sky.color)) return error("[sky] has the colour black, which has no hue");
-    return check_kind({"even", {"color"}, {"luminance"}}, {}, given, "an even [sky]", sky.loc);
+    return check_kind({"even", {"color"}, {"luminance"}}, {}, given, "a uniform [sky]", sky.loc);
   }
   const Keys air = {"turbidity", "ground_albedo", "altitude", "north"};
   if (sky.sun_elevation || sky.sun_azimuth) {
     return check_kind({"sun", {"sun_azimuth"}, {"sun_elevation"}}, air, given,
-                      "a [sky] by the sun's position", sky.loc);
+                      "a [sky] with a sun position", sky.loc);
   }
   GLOAM_TRY_STATUS(
       check_kind({"place", {"utc_offset", "speed"}, {"date", "time", "latitude", "longitude"}}, air,
-                 given, "a [sky] by date and place", sky.loc));
+                 given, "a [sky] with date and place", sky.loc));
   if (!is_day(*sky.date)) {
-    return error(fmt::format("there is no {:04}-{:02}-{:02} from 1900 to 2100", sky.date->year,
+    return error(fmt::format("{:04}-{:02}-{:02} is not a date from 1900 to 2100", sky.date->year,
                              sky.date->month, sky.date->day));
   }
   if (!is_clock(*sky.time)) {
     return error(fmt::format("'time' of [sky] is {:02}:{:02}:{:02}", sky.time->hour,
                              sky.time->minute, sky.time->second),
-                 "from 00:00 to 23:59");
+                 "use a time from 00:00 to 23:59");
   }
   return {};
 }
 
 Status validate_blackout(const BlackoutOptions& blackout) {
   if (!blackout.until && blackout.starter) {
-    return Error{ErrorKind::kInput, "[blackout] has 'starter', and no lamp comes back",
-                 blackout.loc, "give 'until', or leave 'starter' out"};
+    return Error{ErrorKind::kInput, "[blackout] has 'starter', but no lamp turns on again",
+                 blackout.loc, "specify 'until', or remove 'starter'"};
   }
   if (blackout.until && *blackout.until <= blackout.at) {
     return Error{
         ErrorKind::kInput,
-        fmt::format("[blackout] ends at {} s, and begins at {} s", *blackout.until, blackout.at),
+        fmt::format("[blackout] ends at {} s, but starts at {} s", *blackout.until, blackout.at),
         blackout.loc, "'until' is a time, not a duration"};
   }
   return {};
@@ -252,33 +255,34 @@ Status validate_volume(const VolumeOptions& volume) {
     return Error{ErrorKind::kInput, what + " " + message, volume.loc, std::move(hint)};
   };
   for (const double edge : {volume.size.x, volume.size.y, volume.size.z}) {
-    if (edge < kSmallestLength) return error("has no size", "give 'size' = [x, y, z] in metres");
+    if (edge < kSmallestLength) return error("has no size", "specify 'size' = [x, y, z] in metres");
   }
   const bool own = !volume.mass_extinction.empty();
   if (own == !volume.medium.empty()) {
     return error(own ? "has both 'medium' and 'mass_extinction'"
                      : "has neither 'medium' nor 'mass_extinction'",
-                 "give one of them");
+                 "specify exactly one of them");
   }
   if (!own && (!volume.albedo.empty() || !volume.g.empty()))
-    return error("has 'medium' and numbers of its own", "give them with 'mass_extinction'");
+    return error("has 'medium' together with 'albedo' or 'g'", "use them with 'mass_extinction'");
   for (const auto& [key, numbers] :
        {std::pair{"mass_extinction", &volume.mass_extinction}, std::pair{"albedo", &volume.albedo},
         std::pair{"g", &volume.g}}) {
     constexpr size_t kBands = 6;
     if (numbers->size() <= 1 || numbers->size() == kBands) continue;
-    return error(fmt::format("has {} numbers in '{}'", numbers->size(), key),
-                 "one for all bands, or one each for red, green, blue, 905 nm, 1550 nm, 8-14 µm");
+    return error(
+        fmt::format("has {} numbers in '{}'", numbers->size(), key),
+        "use one for all bands, or one each for red, green, blue, 905 nm, 1550 nm, 8-14 µm");
   }
   if (volume.density.has_value() == volume.visibility.has_value()) {
     return error(volume.density ? "has both 'density' and 'visibility'"
                                 : "has neither 'density' nor 'visibility'",
-                 "give one of them");
+                 "specify exactly one of them");
   }
   if (volume.pattern && !volume.grid.empty())
-    return error("has both 'grid' and 'pattern'", "give one of them");
+    return error("has both 'grid' and 'pattern'", "specify only one of them");
   if (volume.pattern && !volume.temperature_grid.empty())
-    return error("has both 'pattern' and 'temperature_grid'", "give its density as 'grid'");
+    return error("has both 'pattern' and 'temperature_grid'", "specify its density with 'grid'");
   return {};
 }
 

@@ -15,15 +15,15 @@ struct PlaceRule {
 };
 constexpr PlaceRule kPlaceRules[] = {
     {ProbePlace::kPoint, true, true, false, false, false,
-     "give 'position' in the world, or 'body' and 'position' in its frame"},
+     "specify 'position' in the world, or 'body' and 'position' in its frame"},
     {ProbePlace::kSurface, true, true, false, false, true,
-     "give 'position' in the world, or 'body' and 'position' in its frame, and a 'normal' if it is "
-     "not +Z"},
+     "specify 'position' in the world, or 'body' and 'position' in its frame, and a 'normal' if it "
+     "is not +Z"},
     {ProbePlace::kBodies, false, true, true, false, false,
-     "give 'body', or 'agent' for all parts of a person or vehicle"},
+     "specify 'body', or 'agent' for all parts of a person or vehicle"},
     {ProbePlace::kBodiesOrPoint, true, true, true, false, false,
-     "give 'body' or 'agent' for what sinks in, or 'position' for the print there"},
-    {ProbePlace::kCamera, false, false, false, true, false, "give 'camera'"},
+     "specify 'body' or 'agent' for sinking parts, or 'position' for the footprint at that point"},
+    {ProbePlace::kCamera, false, false, false, true, false, "specify 'camera'"},
 };
 
 const PlaceRule& rule_of(ProbePlace place) {
@@ -52,15 +52,15 @@ Status validate_probe(const ProbeOptions& probe) {
               {"normal", probe.normal.has_value(), rule.normal}};
   int places = 0;
   for (const auto& key : keys) {
-    if (key.is_given && !key.may_be) return bad(fmt::format("has a '{}'", key.key));
+    if (key.is_given && !key.may_be) return bad(fmt::format("does not support '{}'", key.key));
     if (key.is_given && key.key != std::string_view("normal")) ++places;
   }
-  if (places == 0) return bad("says not where");
+  if (places == 0) return bad("does not specify a place");
   const bool is_point =
       quantity.place == ProbePlace::kPoint || quantity.place == ProbePlace::kSurface;
-  if (places > 1 && !is_point) return bad("says where in two ways");
+  if (places > 1 && !is_point) return bad("specifies two places");
   if (const auto& n = probe.normal; n && !(n->x * n->x + n->y * n->y + n->z * n->z > 1e-12))
-    return bad("has a 'normal' of no direction");
+    return bad("has a 'normal' of length 0");
   return {};
 }
 

@@ -59,9 +59,9 @@ Status finish(const Scene& scene, std::optional<double> speed, AgentDescription*
     agent->speed = speed.value_or(draw_speed(agent->seed));
     if (agent->speed > kFastestWalk) {
       return Error{ErrorKind::kInput,
-                   fmt::format("'{}' is to go {:g} m/s; people here walk, at most {:g} m/s",
+                   fmt::format("'{}' has a speed of {:g} m/s, but people walk at {:g} m/s at most",
                                agent->name, agent->speed, kFastestWalk),
-                   agent->loc, "give it less, or nothing for what is usual"};
+                   agent->loc, "reduce 'speed', or omit it for a typical value"};
     }
     return {};
   }
@@ -161,7 +161,7 @@ Result<std::vector<AgentDescription>> describe_agents(const CompiledWorld& world
     for (int part = 0; part < agent.parts(); ++part) {
       const int body = mj_name2id(m, mjOBJ_BODY, agent.body_name(part).c_str());
       GLOAM_CHECK(body > 0 && m->body_mocapid[body] >= 0,
-                  "an agent has a mocap body for each part");
+                  "each part of an agent must have a mocap body");
       agent.body[static_cast<size_t>(part)] = body;
       agent.mocap[static_cast<size_t>(part)] = m->body_mocapid[body];
     }

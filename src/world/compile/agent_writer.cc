@@ -68,7 +68,7 @@ class AgentWriter {
       if (mjs_findBody(spec_, name.c_str()) != nullptr) {
         return Error{
             ErrorKind::kInput,
-            fmt::format("agent '{}': the environment has a body '{}' already", agent_.name, name),
+            fmt::format("agent '{}': the environment already has a body '{}'", agent_.name, name),
             agent_.loc, "rename the agent"};
       }
       mjsBody* body = edit(mjs_addBody, mjs_findBody(spec_, "world"), nullptr);

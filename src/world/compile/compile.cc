@@ -93,11 +93,10 @@ void note_sizes(const Scene& scene, const Place& place, std::vector<Error>* note
                             asked);
       }
       if (told.empty()) continue;
-      notes->push_back({ErrorKind::kInput, fmt::format("prop '{}': it is {}", prop.name, told),
-                        prop.loc,
-                        fmt::format("the nearest that a {} can be; `gloam props` tells what is "
-                                    "usual",
-                                    prop.kind)});
+      notes->push_back(
+          {ErrorKind::kInput, fmt::format("prop '{}': it is {}", prop.name, told), prop.loc,
+           fmt::format("the closest possible size of a {}; `gloam props` lists typical sizes",
+                       prop.kind)});
     }
   }
 }
@@ -154,7 +153,7 @@ Status choose_keyframe(const std::string& keyframe, CompiledWorld* world) {
                !names.empty() ? suggest_name(keyframe, names)
                : count == 0
                    ? "it has no keyframes"
-                   : fmt::format("its keyframes have no names: give a number, 0 to {}", count - 1)};
+                   : fmt::format("its keyframes have no names: use a number, 0 to {}", count - 1)};
 }
 
 // Channels among outputs become the outputs that a recording makes of them.
@@ -173,7 +172,7 @@ Result<World> compile_scene(const Scene& written, const std::string& keyframe,
   std::vector<DrawnOption> drawn;
   GLOAM_TRY_STATUS(draw_options(DrawStage::kPlace, &scene, &drawn));
   apply_adversity(&scene);
-  if (has_generator(scene.environment)) progress.begin("making the place", 0);
+  if (has_generator(scene.environment)) progress.begin("generating the place", 0);
   GLOAM_TRY(std::optional<Place> place, make_place(scene));
   GLOAM_TRY_STATUS(progress.check());
   if (scene.weather && !scene.sky) {
@@ -249,7 +248,7 @@ Result<World> World::compile_at(const Scene& scene, const std::string& keyframe,
     return Error{ErrorKind::kUsage,
                  fmt::format("keyframe '{}': this is a scene, not a model", keyframe),
                  {scene.file.string(), 0, 0},
-                 "name it at its robot: [[robot]] keyframe = \"NAME\""};
+                 "set it on its robot: [[robot]] keyframe = \"NAME\""};
   return or_no_memory("the scene's model",
                       [&] { return compile_scene(scene, keyframe, progress); });
 }

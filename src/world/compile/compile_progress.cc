@@ -35,7 +35,7 @@ CompileProgress::~CompileProgress() { stop(); }
 
 Status CompileProgress::check() const {
   if (!cancelled_) return {};
-  return Error{ErrorKind::kInterrupted, "the compilation was stopped"};
+  return Error{ErrorKind::kInterrupted, "the compilation was cancelled"};
 }
 
 void CompileProgress::begin(std::string what, double weight, double expected) {

@@ -87,11 +87,10 @@ Status settle_compiler_options(const std::filesystem::path& file, const std::str
                                std::vector<Error>* notes) {
   const SourceLoc fuse = files->find_setting(file, "compiler", "fusestatic");
   if (model->compiler.fusestatic != 0 && fuse.line > 0)
-    notes->push_back({ErrorKind::kInput,
-                      fmt::format("{}: 'fusestatic' is left out, static bodies stay bodies of "
-                                  "their own",
-                                  title),
-                      fuse, "nothing moves otherwise for it: leave it out of the file"});
+    notes->push_back(
+        {ErrorKind::kInput,
+         fmt::format("{}: 'fusestatic' is ignored: static bodies remain separate bodies", title),
+         fuse, "the motion is the same: remove it from the file"});
   const bool has_mass = model->compiler.settotalmass > 0;
   const bool has_ranges =
       mjs_firstElement(model, mjOBJ_ACTUATOR) != nullptr && !same(model->compiler.LRopt, level);

@@ -79,7 +79,7 @@ class SettingsComparison {
     if (name.ends_with("flags")) return;  // bit by bit
     if (std::equal(own, own + count, level)) return;
     if (std::equal(own, own + count, usual) && !given_.contains(std::string(name))) return;
-    dropped_.push_back({fmt::format("{} {}, the level has {}", name, text_of(name, own, count),
+    dropped_.push_back({fmt::format("{} {}, but the scene has {}", name, text_of(name, own, count),
                                     text_of(name, level, count)),
                         "option", std::string(name)});
   }
@@ -89,8 +89,9 @@ class SettingsComparison {
       const int bit = 1 << i;
       if ((own & bit) == 0 || (level & bit) != 0) continue;
       const std::string name = lower_case(flags.names[i]);
-      dropped_.push_back({fmt::format("flag {} {}, the level has {}", name, flags.own, flags.level),
-                          "flag", name});
+      dropped_.push_back(
+          {fmt::format("flag {} {}, but the scene has {}", name, flags.own, flags.level), "flag",
+           name});
     }
   }
 
@@ -98,7 +99,7 @@ class SettingsComparison {
   void compare_group(const char* name, const Group& own, const Group& level, const Group& usual) {
     if (std::memcmp(&own, &level, sizeof(Group)) == 0) return;
     if (std::memcmp(&own, &usual, sizeof(Group)) == 0) return;
-    dropped_.push_back({fmt::format("visual/{} is not the level's", name), name, ""});
+    dropped_.push_back({fmt::format("visual/{}, but the scene has other values", name), name, ""});
   }
 
   const ModelSettings &own_, &level_;

@@ -107,8 +107,8 @@ class Overlaps {
       look_in(world_.scene.objects, "object"), look_in(world_.scene.props, "prop");
     }
     out_.push_back({ErrorKind::kInput,
-                    fmt::format("{} begins {:.2g} m deep in {}", title, deepest.depth, deepest.in),
-                    loc, "move its position"});
+                    fmt::format("{} starts {:.2g} m deep in {}", title, deepest.depth, deepest.in),
+                    loc, "change its position"});
   }
 
   void find_sunken(const mjData& d) {
@@ -120,9 +120,9 @@ class Overlaps {
       const double z = d.xpos[3 * robot.root_body + 2];
       if (z < lowest - kBelow)
         out_.push_back({ErrorKind::kInput,
-                        fmt::format("robot '{}' begins {:.2g} m below the lowest floor", robot.name,
+                        fmt::format("robot '{}' starts {:.2g} m below the lowest floor", robot.name,
                                     lowest - z),
-                        robot.options.loc, "move its position"});
+                        robot.options.loc, "change its position"});
     }
   }
 

@@ -89,7 +89,7 @@ Result<SpecPtr> parse_model(const fs::path& file, const FileAccess& access, Mode
   mjSpec* spec = nullptr;
   files->forget_failures();
   const MujocoWarningCapture warnings;
-  const ModelWatch watch(fmt::format("MuJoCo reads {}", file.filename().string()), 0,
+  const ModelWatch watch(fmt::format("loading {} in MuJoCo", file.filename().string()), 0,
                          files->slowest_replicate(), progress);
   const Status status =
       guarded([&] { spec = mj_parseXML(path.c_str(), files->vfs(), message, sizeof(message)); });
@@ -152,9 +152,9 @@ void report_dropped(const LevelRobot& robot, const mjSpec& level, const ModelFil
        dropped_settings(robot.settings, ModelSettings::of(level), robot.settings_told)) {
     const SourceLoc own = files.find_setting(o.file, setting.element, setting.attribute);
     unsupported->push_back({ErrorKind::kUnsupported,
-                            fmt::format("robot '{}' gives {}", o.name, setting.text),
+                            fmt::format("robot '{}' has {}", o.name, setting.text),
                             own.line > 0 ? own : loc,
-                            "the level has one value for all robots; set it in the environment"});
+                            "a scene has one value for all robots; set it in the environment"});
   }
 }
 
@@ -172,12 +172,12 @@ Status free_base(const RobotOptions& robot, mjSpec* spec) {
   };
   if (roots.size() != 1)
     return fault(fmt::format("its model has {} bodies below the world", roots.size()),
-                 "base = \"free\" takes a model with one root; a URDF's root link must not be "
+                 "base = \"free\" requires a model with one root; a URDF's root link must not be "
                  "called 'world'");
   if (mjs_firstChild(roots[0], mjOBJ_JOINT, 0) != nullptr)
-    return fault("its root has a joint already", "leave out base");
+    return fault("its root already has a joint", "remove 'base'");
   mjsJoint* joint = edit(mjs_addFreeJoint, roots[0]);
-  if (joint == nullptr) return fault("MuJoCo refuses the joint", "");
+  if (joint == nullptr) return fault("MuJoCo rejects the joint", "");
   set_name(joint->element, "floating_base");
   return {};
 }
@@ -190,8 +190,8 @@ Status check_prefix(mjSpec* base, const RobotOptions& robot) {
     const std::string name = mjs_getString(mjs_getName(e));
     if (name != robot.name && !name.starts_with(robot.name + "/")) continue;
     return Error{ErrorKind::kInput,
-                 fmt::format("robot '{}': the environment has a body '{}', which would pass for a "
-                             "part of the robot",
+                 fmt::format("robot '{}': the environment has a body '{}', which would be taken "
+                             "for a part of the robot",
                              robot.name, name),
                  robot.loc, "rename the robot: its bodies are called ROBOT/BODY"};
   }
@@ -240,7 +240,8 @@ Status attach_robot(mjSpec* base, LevelRobot* level_robot, ModelFiles* files) {
   if (!status.ok() || attached == nullptr) {
     Error error =
         files->explain(status.ok() ? mjs_getError(base) : status.error().message, robot.file);
-    error.message = fmt::format("robot '{}' cannot join the scene: {}", robot.name, error.message);
+    error.message =
+        fmt::format("robot '{}' cannot be added to the scene: {}", robot.name, error.message);
     return error;
   }
   level_robot->settings_told = settings_told(base, warnings_before);
@@ -343,7 +344,7 @@ Status check_finite(const Scene& scene, const Level& level, const ModelFiles& fi
   const std::string place = written_at(level.spec.get(), found->type, found->id);
   Error error =
       files.explain(fmt::format("{}, {}", found->fault, place), file_of(scene, found->name));
-  error.hint = "MuJoCo reads nan and inf as numbers: give a finite one";
+  error.hint = "MuJoCo accepts nan and inf as numbers: use a finite one";
   return error;
 }
 
@@ -355,13 +356,13 @@ Status compile(const Scene& scene, ModelFiles* files, Level* level, double weigh
   mjSpec* spec = level->spec.get();
   if (const std::optional<EndlessCompile> endless = find_endless_compile(*spec)) {
     Error error = files->explain(endless->fault, file_of(scene, endless->name));
-    error.hint = "with muscles MuJoCo's compiler simulates: give 0 or more";
+    error.hint = "MuJoCo's compiler simulates muscles: set it to 0 or more";
     return error;
   }
   const mjVFS* vfs = files->vfs();
   const int warnings_before = mjs_numWarnings(spec);
   const MujocoWarningCapture warnings;
-  const ModelWatch watch("MuJoCo compiles the model", weight, 0, progress);
+  const ModelWatch watch("compiling the model in MuJoCo", weight, 0, progress);
   const MujocoCompiles threads;
   const Status status = guarded([&] { model = mj_compile(spec, vfs); });
   level->model.reset(model);

@@ -47,8 +47,8 @@ Status add_cameras(const Scene& scene, Level* level) {
     if (mjs_findElement(spec, mjOBJ_CAMERA, camera.name.c_str()) != nullptr) {
       if (says_nothing_of_its_pose(camera)) continue;
       return Error{ErrorKind::kInput,
-                   fmt::format("a model has a camera named '{}' already", camera.name), camera.loc,
-                   "choose another name, or leave its pose out to use the model's camera"};
+                   fmt::format("a model already has a camera named '{}'", camera.name), camera.loc,
+                   "choose another name, or omit the pose to use the model's camera"};
     }
     const std::string& name = camera.track.empty() ? camera.body : camera.track;
     mjsBody* body = mjs_findBody(spec, name.empty() ? "world" : name.c_str());

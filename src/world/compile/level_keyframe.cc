@@ -142,7 +142,7 @@ Status fill_initial_keyframe(Level* level) {
        e = mjs_nextElement(level->spec.get(), e)) {
     if (name == mjs_getString(mjs_getName(e))) spec_key = mjs_asKey(e);
   }
-  GLOAM_CHECK(spec_key != nullptr, "the model has a keyframe that its spec does not");
+  GLOAM_CHECK(spec_key != nullptr, "the model has a keyframe that its spec does not have");
   edit(mjs_setDouble, spec_key->qpos, initial.qpos, static_cast<int>(m->nq));
   edit(mjs_setDouble, spec_key->qvel, initial.qvel, static_cast<int>(m->nv));
   edit(mjs_setDouble, spec_key->act, initial.act, static_cast<int>(m->na));

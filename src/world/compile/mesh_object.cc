@@ -82,10 +82,10 @@ class ObjectLoader {
   }
 
   void note_size(const std::string& what, double size, const SourceLoc& loc) {
-    std::string hint = "say in 'unit' how many metres one unit of the file is";
-    if (size > kTiny) hint = "if the file is in millimetres, give unit = 0.001";
-    out_.notes.push_back(
-        {ErrorKind::kInput, fmt::format("{} is {:.3g} m large", what, size), loc, std::move(hint)});
+    std::string hint = "set 'unit' to the length of one unit of the file in metres";
+    if (size > kTiny) hint = "if the file is in millimetres, set unit = 0.001";
+    out_.notes.push_back({ErrorKind::kInput, fmt::format("{} has a size of {:.3g} m", what, size),
+                          loc, std::move(hint)});
   }
 
   /// Names that are taken, with the kind of thing that has each.
@@ -113,13 +113,13 @@ class ObjectLoader {
         return Error{ErrorKind::kInput,
                      fmt::format("environment: node '{}' and {} have the same name", node.own,
                                  taken->at(name)),
-                     place.loc, "rename one of them, or give clash = \"rename\" or \"prefix\""};
+                     place.loc, "rename one of them, or set clash = \"rename\" or \"prefix\""};
       name = fmt::format("{}{}_{}", prefix, own, i);
     }
     if (name != prefix + node.own)
       out_.notes.push_back(
           {ErrorKind::kInput,
-           fmt::format("environment: node '{}' is called '{}' here", node.own, name), place.loc});
+           fmt::format("environment: node '{}' is renamed to '{}'", node.own, name), place.loc});
     return name;
   }
 

@@ -32,9 +32,10 @@ class ObjectWriter {
     for (const auto& [type, word] :
          {std::pair(mjOBJ_BODY, "body"), std::pair(mjOBJ_JOINT, "joint")})
       if (mjs_findElement(spec_, type, o_.name.c_str()) != nullptr)
-        return Error{ErrorKind::kInput,
-                     fmt::format("{}: the environment has a {} of that name", title(o_), word),
-                     o_.loc, "rename the object"};
+        return Error{
+            ErrorKind::kInput,
+            fmt::format("{}: the environment already has a {} of that name", title(o_), word),
+            o_.loc, "rename the object"};
     mjsBody* body = edit(mjs_addBody, mjs_findBody(spec_, "world"), nullptr);
     name(body->element, o_.name);
     write_pose(o_.X_WO, body->pos, body->quat);
@@ -43,12 +44,13 @@ class ObjectWriter {
       name(edit(mjs_addFreeJoint, body)->element, o_.name);
       set_inertia(converted.mass, mass, body);
       if (mass < mjMINVAL || *std::min_element(body->inertia, body->inertia + 3) < mjMINVAL)
-        return Error{ErrorKind::kInput,
-                     fmt::format("{} weighs {:.2g} kg and is {:.2g} m large: too light to move",
-                                 title(o_), mass, 2.0 * max_component(half_extents(mesh_))),
-                     o_.loc,
-                     "say in 'unit' how many metres one unit of the file is, or give motion = "
-                     "\"static\""};
+        return Error{
+            ErrorKind::kInput,
+            fmt::format("{} has a mass of {:.2g} kg and a size of {:.2g} m: too light to move",
+                        title(o_), mass, 2.0 * max_component(half_extents(mesh_))),
+            o_.loc,
+            "set 'unit' to the length of one unit of the file in metres, or set motion = "
+            "\"static\""};
     }
     body->mocap = o_.motion == "mocap";
     double volume = 0;
@@ -127,8 +129,8 @@ class ConvertWatch {
   ConvertWatch(const MeshObjects& objects, CompileProgress* progress) {
     const std::vector<MeshObject>& all = objects.objects;
     const std::string what = all.size() == 1
-                                 ? fmt::format("making '{}' physical", all[0].options.name)
-                                 : fmt::format("making {} meshes physical", all.size());
+                                 ? fmt::format("making colliders of '{}'", all[0].options.name)
+                                 : fmt::format("making colliders of {} meshes", all.size());
     double expected = 0;  // CoACD takes one mesh at a time
     for (const MeshObject& object : all) expected += expected_seconds(object);
     if (progress != nullptr) progress->begin(what, kConvertWeight, expected);

@@ -37,7 +37,7 @@ Status add(CameraOptions camera, Scene* scene) {
   for (const CameraOptions& other : scene->cameras) {
     if (other.name == camera.name)
       return Error{ErrorKind::kInput,
-                   fmt::format("there is a camera '{}' beside the rig's own", camera.name),
+                   fmt::format("camera '{}' has the same name as a camera of the rig", camera.name),
                    camera.loc, "rename one of them"};
   }
   scene->cameras.push_back(std::move(camera));

@@ -50,7 +50,7 @@ struct SampledRegion {
 
   double extent() const { return std::max(mesh_high[0] - mesh_low[0], mesh_high[1] - mesh_low[1]); }
   std::string text() const {
-    return fmt::format("the mesh reaches over x {:.4g} … {:.4g} m, y {:.4g} … {:.4g} m",
+    return fmt::format("the mesh extends over x {:.4g} … {:.4g} m, y {:.4g} … {:.4g} m",
                        mesh_low[0], mesh_high[0], mesh_low[1], mesh_high[1]);
   }
 };
@@ -59,7 +59,7 @@ Result<SampledRegion> region_of(const HeightFieldOptions& o,
                                 const std::vector<PlacedMesh>& meshes) {
   Vec3Of<double> low, high;
   if (!bounds_of(meshes, &low, &high))
-    return Error{ErrorKind::kInput, "there are no triangles in the file"};
+    return Error{ErrorKind::kInput, "the file contains no triangles"};
   SampledRegion region{{low.x, low.y}, {high.x, high.y}, {}, {}};
   region.low = o.low.value_or(region.mesh_low);
   region.high = o.high.value_or(region.mesh_high);
@@ -70,10 +70,11 @@ void report(const HeightFieldOptions& o, const Floors& floors,
             const std::vector<HeightField>& fields, const HeightError& error) {
   const HeightGrid& grid = floors.grid;
   std::string more;
-  if (fields.size() > 1) more += fmt::format(", {} fields of floors above", fields.size() - 1);
+  if (fields.size() > 1)
+    more += fmt::format(", {} height fields of floors above", fields.size() - 1);
   if (fields[0].filled > 0)
-    more += fmt::format(", {} samples met nothing and were filled", fields[0].filled);
-  std::string distance = "; no cell met the mesh at all its corners";
+    more += fmt::format(", {} samples missed the mesh and were filled", fields[0].filled);
+  std::string distance = "; no cell has all its corners on the mesh";
   if (error.points > 0)
     distance =
         fmt::format("; distance to the mesh: mean {:.2g} m, 95 % below {:.2g} m, at most {:.2g} m",
@@ -91,7 +92,7 @@ Result<std::vector<HeightField>> sample(const HeightFieldOptions& o, const Model
   const std::vector<PlacedMesh> meshes = place_meshes(o, model);
   GLOAM_TRY(const SampledRegion region, region_of(o, meshes));
   const bool is_doubtful = o.unit == 1 && region.extent() > kDoubtfulSize;
-  const std::string unit_hint = "if the file is in millimetres, give unit = 0.001";
+  const std::string unit_hint = "if the file is in millimetres, set unit = 0.001";
   if (is_doubtful) note(fmt::format("the mesh is {:.0f} m wide", region.extent()), unit_hint);
   Result<HeightGrid> grid = make_height_grid(region.low, region.high, o.resolution, o.layers);
   if (!grid.ok()) {
@@ -106,17 +107,17 @@ Result<std::vector<HeightField>> sample(const HeightFieldOptions& o, const Model
     return Error{ErrorKind::kInput,
                  ground.error().message,
                  {},
-                 region.text() + "; exactly vertical walls are no ground"};
+                 region.text() + "; exactly vertical walls are not ground"};
   }
   GLOAM_TRY(std::vector<HeightField> fields, slabs_of(floors));
   if (o.layers > 1 && fields.empty())
-    note("one layer was found: no floor lies under another",
-         "lower floors must face up: are the mesh's triangles turned inside out?");
+    note("only one layer was found: no floor lies below another",
+         "lower floors must face up: are the mesh's triangles inside out?");
   fields.insert(fields.begin(), std::move(ground).value());
   GLOAM_TRY(const HeightError error, height_error(meshes, floors, fields));
   const auto samples = static_cast<int64_t>(fields[0].grid.size());
   if (fields[0].filled > samples / 2)
-    note(fmt::format("{} of {} samples met nothing: most of this ground is made up",
+    note(fmt::format("{} of {} samples missed the mesh: most of this ground is filled in",
                      fields[0].filled, samples),
          region.text());
   report(o, floors, fields, error);
@@ -167,9 +168,9 @@ Status add_grounds(const std::vector<SampledGround>& grounds, mjSpec* spec) {
       for (const mjtObj type : {mjOBJ_GEOM, mjOBJ_HFIELD}) {
         if (mjs_findElement(spec, type, name.c_str()) == nullptr) continue;
         return Error{ErrorKind::kInput,
-                     fmt::format("{}: the environment has a {} '{}' already", title(ground.options),
+                     fmt::format("{}: the environment already has a {} '{}'", title(ground.options),
                                  mju_type2Str(type), name),
-                     ground.options.loc, "give it another name"};
+                     ground.options.loc, "choose another name"};
       }
       add_field(name, ground.options, ground.fields[i], spec);
     }

@@ -83,12 +83,11 @@ Status set_grid(const GasOptions& options, const Extent& extent, GasDescription*
   const auto along = [&](double edge) { return std::max(std::ceil(edge / voxel - 1e-6), 4.0); };
   const double nx = along(edges.x), ny = along(edges.y), nz = along(edges.z);
   if (!(nx * ny * nz <= kMostVoxels) || std::max({nx, ny, nz}) > 1024) {
-    return gas_error(
-        options,
-        fmt::format("{:.0f} x {:.0f} x {:.0f} voxels of {:g} m are too many; the limit "
-                    "is 1024 along an edge and 134 million in all",
-                    nx, ny, nz, voxel),
-        "give it a larger 'voxel' or a smaller 'size'");
+    return gas_error(options,
+                     fmt::format("{:.0f} x {:.0f} x {:.0f} voxels of {:g} m are too many; the "
+                                 "limit is 1024 along an edge and 134 million in total",
+                                 nx, ny, nz, voxel),
+                     "use a larger 'voxel' or a smaller 'size'");
   }
   gas->voxel = static_cast<float>(voxel);
   gas->nx = static_cast<int>(nx), gas->ny = static_cast<int>(ny), gas->nz = static_cast<int>(nz);
@@ -174,10 +173,10 @@ Status check_inside(const Options& options, const char* kind, int body, Vec3f p_
   const GasDescription& gas = gases.front();
   const Vec3f high = gas.low + gas.size();
   return Error{ErrorKind::kInput,
-               fmt::format("{} '{}' is at ({:g}, {:g}, {:g}), in no gas", kind, options.name, p_B.x,
-                           p_B.y, p_B.z),
+               fmt::format("{} '{}' is at ({:g}, {:g}, {:g}), outside of any gas", kind,
+                           options.name, p_B.x, p_B.y, p_B.z),
                options.loc,
-               fmt::format("gas '{}' reaches from ({:g}, {:g}, {:g}) to ({:g}, {:g}, {:g})",
+               fmt::format("gas '{}' extends from ({:g}, {:g}, {:g}) to ({:g}, {:g}, {:g})",
                            gas.name, gas.low.x, gas.low.y, gas.low.z, high.x, high.y, high.z)};
 }
 
@@ -255,8 +254,8 @@ Result<GasesDescription> describe_gases(const CompiledWorld& world) {
     if (burns) gas.flame_absorption = flame_absorption_per_heat(gas.fuel.radiated);
     for (const GasDescription& other : out.gases) {
       if (overlap(gas, other))
-        return gas_error(o, fmt::format("its box overlaps that of gas '{}'", other.name),
-                         "make one box of them");
+        return gas_error(o, fmt::format("its box overlaps the box of gas '{}'", other.name),
+                         "merge them into one box");
     }
     out.gases.push_back(std::move(gas));
   }

@@ -91,8 +91,8 @@ Result<std::vector<RotorDescription>> describe_rotors(const CompiledWorld& world
         return rotor_error(
             options,
             fmt::format("actuator '{}' does not push a site along an axis", options.actuator),
-            "its force is the thrust where MJCF says site=\"…\" gear=\"0 0 1 …\"; "
-            "for others give 'site' and 'thrust'");
+            "its force is the thrust if MJCF has site=\"…\" gear=\"0 0 1 …\"; otherwise specify "
+            "'site' and 'thrust'");
       }
       site = m.actuator_trnid[2 * rotor.actuator];
       rotor.thrust = length(push);
@@ -134,7 +134,8 @@ Status check_stirrers(const Scene& scene, const std::vector<GasOptions>& gases) 
     const RotorOptions& rotor = scene.rotors.front();
     return Error{ErrorKind::kInput,
                  fmt::format("rotor '{}' has no air to drive: there is no gas", rotor.name),
-                 rotor.loc, "add a [[gas]], or a [[dust]], [[smoke]] or [[fire]], which make one"};
+                 rotor.loc,
+                 "add a [[gas]], or a [[dust]], [[smoke]] or [[fire]], which create one"};
   }
   const bool carries =
       std::any_of(gases.begin(), gases.end(), [](const auto& gas) { return gas.medium == "dust"; });
@@ -143,7 +144,7 @@ Status check_stirrers(const Scene& scene, const std::vector<GasOptions>& gases) 
   return Error{ErrorKind::kInput,
                fmt::format("dust '{}' has no gas that carries dust: '{}' carries {}", dust.name,
                            gases.front().name, gases.front().medium),
-               dust.loc, "a gas carries one medium: say medium = \"dust\" in its [[gas]]"};
+               dust.loc, "a gas carries one medium: set medium = \"dust\" in its [[gas]]"};
 }
 
 }  // namespace gloam

@@ -70,18 +70,17 @@ bool overlap(const SoilDescription& a, const SoilDescription& b) {
 }
 
 Error no_ground(const SoilOptions& o) {
-  return soil_error(o, "there is no ground below all of it",
-                    "'position' is where the ground is looked for, downwards: raise it, or make "
-                    "'size' smaller");
+  return soil_error(o, "there is no ground below parts of it",
+                    "the ground is searched downwards from 'position': raise it, or reduce 'size'");
 }
 
 Status lay_fallen(const SoilOptions& o, const WeatherOptions& weather, const mjModel& m,
                   SoilDescription* soil) {
   if (!lay_fallen_snow(weather, m, o.position.z, soil)) return no_ground(o);
   if (std::all_of(soil->share.begin(), soil->share.end(), [](float s) { return s <= 0; })) {
-    return soil_error(o, "no snow falls on any of it",
-                      "something is above it: move it, or raise 'position', from which the ground "
-                      "is looked for, downwards");
+    return soil_error(
+        o, "no snow falls on any of it",
+        "it is covered: move it, or raise 'position', from which the ground is searched downwards");
   }
   return {};
 }
@@ -124,15 +123,17 @@ Result<SoilDescription> describe_soil(const SoilOptions& o,
   const auto along = [cell](double edge) { return std::max(std::lround(edge / cell), 2L); };
   const long nx = along(o.size[0]), ny = along(o.size[1]);
   if (static_cast<double>(nx) * static_cast<double>(ny) > kMostSoilCells) {
-    return soil_error(o, fmt::format("{} x {} cells are more than {:g}", nx, ny, kMostSoilCells),
-                      fmt::format("a 'cell' of {:.3g} m will do",
+    return soil_error(o,
+                      fmt::format("{} x {} cells exceed the limit of {:g}", nx, ny, kMostSoilCells),
+                      fmt::format("use a 'cell' of {:.3g} m",
                                   std::sqrt(o.size[0] * o.size[1] / kMostSoilCells) * 1.01));
   }
   soil.nx = static_cast<int>(nx), soil.ny = static_cast<int>(ny);
   soil.dx = soil.size_x / soil.nx, soil.dy = soil.size_y / soil.ny;
   soil.strength = strength_of(o);
   if (soil.strength.k_c == 0 && soil.strength.k_phi == 0)
-    return soil_error(o, "k_c and k_phi are both 0", "one of them carries what stands on it");
+    return soil_error(o, "k_c and k_phi are both 0",
+                      "at least one must be above 0 for the soil to bear loads");
   if (is_fallen_snow(o, weather)) {
     GLOAM_TRY_STATUS(lay_fallen(o, *weather, m, &soil));
   } else if (o.over_ground) {
@@ -157,7 +158,7 @@ Result<std::vector<SoilDescription>> describe_soils(const Scene& scene, const mj
     for (const SoilDescription& other : soils) {
       if (!overlap(soil, other)) continue;
       return soil_error(o, fmt::format("it overlaps soil '{}'", other.name),
-                        "make one bed of them, or move them apart");
+                        "merge them into one bed, or move them apart");
     }
     soils.push_back(std::move(soil));
   }

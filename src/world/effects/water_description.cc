@@ -122,9 +122,9 @@ Status check_waves(const WaterOptions& o) {
   if (o.wave_height <= highest) return {};
   return water_error(o,
                      fmt::format("waves of {:g} m and {:g} s are {:.2f} m long here and would "
-                                 "break: they can be {:.3g} m high",
+                                 "break: the maximum height is {:.3g} m",
                                  o.wave_height, o.wave_period, length, highest),
-                     "lower 'wave_height', or give it a longer 'wave_period' or more 'depth'");
+                     "reduce 'wave_height', or increase 'wave_period' or 'depth'");
 }
 
 bool overlap(const WaterOptions& a, const WaterOptions& b) {
@@ -171,8 +171,8 @@ Result<std::vector<WaterDescription>> describe_waters(const Scene& scene) {
     for (size_t other = 0; other < i; ++other) {
       if (!overlap(o, scene.waters[other])) continue;
       return water_error(
-          o, fmt::format("its box overlaps that of water '{}'", scene.waters[other].name),
-          "make one box of them, or move them apart");
+          o, fmt::format("its box overlaps the box of water '{}'", scene.waters[other].name),
+          "merge them into one box, or move them apart");
     }
     waters.push_back(describe_water(o, wind, scene.sim.seed));
   }

@@ -32,7 +32,7 @@ std::string one_line(const std::string& text) {
 // what may bring MuJoCo down or never ends.
 std::string stock_refusal(const fs::path& file, unsigned longest) {
   int ends[2];
-  if (::pipe(ends) != 0) return "there is no room to ask it";
+  if (::pipe(ends) != 0) return "its process could not be started";
   const pid_t child = ::fork();
   if (child == 0) {
     ::prctl(PR_SET_PDEATHSIG, SIGKILL);  // it ends with us
@@ -50,10 +50,11 @@ std::string stock_refusal(const fs::path& file, unsigned longest) {
     text.append(piece, static_cast<size_t>(n));
   ::close(ends[0]);
   int state = 0;
-  if (child < 0 || ::waitpid(child, &state, 0) != child) return "there is no room to ask it";
+  if (child < 0 || ::waitpid(child, &state, 0) != child) return "its process could not be started";
   if (WIFSIGNALED(state)) {
-    return WTERMSIG(state) == SIGALRM ? fmt::format("it takes more than {} s", longest)
-                                      : std::string("it ends by ") + ::strsignal(WTERMSIG(state));
+    return WTERMSIG(state) == SIGALRM
+               ? fmt::format("it takes more than {} s", longest)
+               : std::string("it is terminated by signal: ") + ::strsignal(WTERMSIG(state));
   }
   return text;
 }

@@ -277,7 +277,7 @@ Status add_visuals(const CompiledWorld& world, const fs::path& path, mjSpec* spe
     why = saved.error().message;
   }
   left_out->push_back({ErrorKind::kUnsupported,
-                       fmt::format("{} visuals are not in the export: {}", count, why),
+                       fmt::format("{} visuals are not exported: {}", count, why),
                        {path.string(), 0, 0}});
   return write_file_atomic(path, {reinterpret_cast<const uint8_t*>(exact.data()), exact.size()});
 }
@@ -346,9 +346,9 @@ Status World::export_mjcf(const fs::path& folder, std::vector<Error>* left_out) 
   GLOAM_TRY(const ExportedModel exported, write_mjcf(*compiled_, folder, left_out));
   if (exported.why.empty()) return {};
   return Error{ErrorKind::kUnsupported,
-               "MJCF cannot say this level exactly: " + exported.why,
+               "MJCF cannot represent this scene exactly: " + exported.why,
                {(folder / "scene.xml").string(), 0, 0},
-               "the file was written and is close, but not equal in every array"};
+               "the file was written and is close, but not identical in every array"};
 }
 
 }  // namespace gloam

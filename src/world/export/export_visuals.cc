@@ -96,7 +96,7 @@ class VisualExport {
       GLOAM_TRY(mesh, mesh_of(instance.mesh));
     }
     mjsGeom* geom = edit(mjs_addGeom, body->second, nullptr);
-    if (geom == nullptr) return Error{ErrorKind::kUnsupported, "MuJoCo takes no visual geom"};
+    if (geom == nullptr) return Error{ErrorKind::kUnsupported, "MuJoCo rejects the visual geom"};
     geom->type = geom_type(instance.shape);
     geom->contype = geom->conaffinity = 0;
     geom->group = kExportedGroup;
@@ -157,8 +157,8 @@ template <class Option>
 void list(std::span<const Option> options, std::string_view table, std::vector<Error>* out) {
   if (options.empty()) return;
   out->push_back({ErrorKind::kUnsupported,
-                  fmt::format("{} [[{}]]{} not in the export: MJCF has no words for it",
-                              options.size(), table, options.size() == 1 ? " is" : "s are"),
+                  fmt::format("{} [[{}]]{} not exported: MJCF cannot represent it", options.size(),
+                              table, options.size() == 1 ? " is" : "s are"),
                   options.front().loc});
 }
 
@@ -171,11 +171,11 @@ Result<int> add_visual_geoms(const CompiledWorld& world, const fs::path& folder,
   VisualExport visuals(world, description, folder, spec);
   GLOAM_TRY_STATUS(visuals.add_all());
   if (visuals.pictures() > 0) {
-    left_out->push_back({ErrorKind::kUnsupported,
-                         fmt::format("{} visual geoms have their colours and no pictures in the "
-                                     "export",
-                                     visuals.pictures()),
-                         {(folder / "scene.xml").string(), 0, 0}});
+    left_out->push_back(
+        {ErrorKind::kUnsupported,
+         fmt::format("{} visual geoms are exported with colours, but without textures",
+                     visuals.pictures()),
+         {(folder / "scene.xml").string(), 0, 0}});
   }
   return visuals.count();
 }
@@ -201,7 +201,7 @@ std::vector<Error> list_left_out(const Scene& scene) {
   const auto one = [&](const auto& table, std::string_view name) {
     if (table)
       out.push_back({ErrorKind::kUnsupported,
-                     fmt::format("[{}] is not in the export: MJCF has no words for it", name),
+                     fmt::format("[{}] is not exported: MJCF cannot represent it", name),
                      table->loc});
   };
   one(scene.sky, "sky");

@@ -130,7 +130,7 @@ Result<int> LightAuthor::profile_row(const LightOptions& options) {
   if (!profile.ok()) return in_light(std::move(profile).error(), options);
   if (!(profile->most > 0 && profile->flux > 0)) {
     return Error{ErrorKind::kInput,
-                 fmt::format("light '{}': '{}' gives no light in any direction", options.name,
+                 fmt::format("light '{}': '{}' emits no light in any direction", options.name,
                              options.ies.filename().string()),
                  options.loc};
   }

@@ -34,10 +34,9 @@ Status author_blackout(const BlackoutOptions& options, RenderDescription* out) {
     for (const std::string& pattern : *patterns) {
       if (pattern.find('*') != std::string::npos) continue;
       if (std::find(names.begin(), names.end(), pattern) != names.end()) continue;
-      return Error{
-          ErrorKind::kInput,
-          fmt::format("[blackout]: no lamp and nothing that glows is called '{}'", pattern),
-          options.loc, suggest_name(pattern, names)};
+      return Error{ErrorKind::kInput,
+                   fmt::format("[blackout]: no lamp or glowing material is named '{}'", pattern),
+                   options.loc, suggest_name(pattern, names)};
     }
   }
   PowerCut cut;

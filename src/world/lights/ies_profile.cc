@@ -68,7 +68,7 @@ Status complete_c(IesMeasurement* m, const std::string& name) {
   } else if (!whole) {
     return Error{ErrorKind::kInput,
                  fmt::format("horizontal angles of type C from {} to {}", first, last), horizontal,
-                 "they go from 0 to 0, 90, 180 or 360, or from 90 to 270"};
+                 "they must go from 0 to 0, 90, 180 or 360, or from 90 to 270"};
   }
   const size_t rows = m->vertical.size();
   const auto append = [&](double angle, size_t column) {
@@ -104,7 +104,7 @@ Status check_flat(const IesMeasurement& m, const std::string& name) {
         fmt::format("{} angles of type {} from {} to {}", vertical ? "vertical" : "horizontal",
                     m.type == Goniometer::kA ? 'A' : 'B', angles.front(), angles.back()),
         {name, vertical ? m.vertical_line : m.horizontal_line, 0},
-        "they go from -90 to 90, or from 0 to 90 when both sides are alike"};
+        "they must go from -90 to 90, or from 0 to 90 if both sides are alike"};
   }
   return {};
 }

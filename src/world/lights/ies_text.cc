@@ -58,7 +58,7 @@ class Reader {
     double value = 0;
     const auto [stop, code] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
     if (code != std::errc() || stop != digits.data() + digits.size() || !std::isfinite(value)) {
-      return error(fmt::format("{} where {} belongs", quoted(word), what));
+      return error(fmt::format("{} instead of {}", quoted(word), what));
     }
     return value;
   }
@@ -85,9 +85,10 @@ class Reader {
     for (int i = 0; i < count; ++i) {
       GLOAM_TRY(const double angle, number(what));
       if (i == 0) *line = line_;
-      if (!(std::abs(angle) <= 360)) return error(fmt::format("{} of {} degrees", what, angle));
+      if (!(std::abs(angle) <= 360))
+        return error(fmt::format("{} of {} degrees is out of range", what, angle));
       if (i > 0 && !(angle > angles.back())) {
-        return error(fmt::format("{} {} does not rise above {}", what, angle, angles.back()));
+        return error(fmt::format("{} {} is not greater than {}", what, angle, angles.back()));
       }
       angles.push_back(angle);
     }
@@ -123,8 +124,8 @@ Status skip_header(Reader& in, bool* later) {
     const std::string_view tilt = trimmed(line.substr(5));
     if (tilt == "NONE") return {};
     if (tilt != "INCLUDE") {
-      return in.error(fmt::format("TILT is in another file, {}", quoted(tilt)),
-                      "put its table into this file, TILT=INCLUDE, or write TILT=NONE");
+      return in.error(fmt::format("TILT refers to another file, {}", quoted(tilt)),
+                      "include its table in this file with TILT=INCLUDE, or write TILT=NONE");
     }
     GLOAM_TRY_STATUS(in.whole("the lamp's geometry", 1, 3));
     GLOAM_TRY(const int pairs, in.whole("the number of tilt angles", 1, kMostAngles));
@@ -165,7 +166,8 @@ Result<IesMeasurement> read_ies_text(std::string_view text, const std::string& n
   for (int64_t i = 0; i < static_cast<int64_t>(verticals) * horizontals; ++i) {
     GLOAM_TRY(const double value, in.number("an intensity"));
     if (!(value >= 0 && value * factor <= 1e12)) {
-      return in.error(fmt::format("an intensity of {} cd, times {}", value, factor));
+      return in.error(
+          fmt::format("an intensity of {} cd, times {}, is out of range", value, factor));
     }
     out.candela.push_back(value * factor);
   }

@@ -67,8 +67,8 @@ Result<TriangleMesh> read_lamp(const std::filesystem::path& path) {
   for (const ImportedInstance& instance : file.instances)
     append(file.meshes[static_cast<size_t>(instance.mesh)], instance.X_FI, &out);
   if (!(area_of(out) > 0)) {
-    return Error{ErrorKind::kInput,
-                 fmt::format("there is no triangle to shine in '{}'", path.filename().string())};
+    return Error{ErrorKind::kInput, fmt::format("there is no triangle that can emit light in '{}'",
+                                                path.filename().string())};
   }
   return out;
 }

@@ -130,7 +130,7 @@ Checker& check(const Keyframes& p, Checker& c) {
     c.need(p.keys[i].level >= 0 && p.keys[i].level <= 1e9, "level of a key", p.keys[i].level,
            "from 0 to 1e9");
     c.need(i == 0 || p.keys[i].time > p.keys[i - 1].time, "time of a key", p.keys[i].time,
-           "later than that of the key before");
+           "later than the time of the previous key");
   }
   return c;
 }
@@ -154,7 +154,7 @@ Status check_schedule(const LightSchedule& schedule, const SourceLoc& loc) {
             },
             [&](const Flame& p) { c.positive("bandwidth", p.bandwidth).share("depth", p.depth); },
             [&](const PowerCut& p) {
-              c.finite("begin", p.at).need(p.until > p.at, "end", p.until, "later than its begin");
+              c.finite("start", p.at).need(p.until > p.at, "end", p.until, "later than its start");
             }},
         schedule.parts[i]);
     GLOAM_TRY_STATUS(c.status());

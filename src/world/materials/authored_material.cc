@@ -134,9 +134,9 @@ void apply(const MaterialOptions& in, int pattern, int wear, const OwnTextures& 
 /// Reason why the table cannot be applied to a material, or "".
 std::string why_not(const MaterialOptions& in, const MaterialDescription& material) {
   if (!material.imported && (in.base_color || in.metallic || in.roughness || in.emission))
-    return "comes from the model: say its colour, metalness, roughness and emission there";
+    return "comes from the model: set its colour, metalness, roughness and emission there";
   if (has_own_texture(in) && material.mapping == TextureMapping::kCube)
-    return "has a cube texture, which cannot be joined by a bump map or maps of layers";
+    return "has a cube texture, which cannot be combined with a bump map or layer maps";
   return {};
 }
 
@@ -181,7 +181,7 @@ Status author_materials(const std::vector<MaterialOptions>& options, RenderDescr
     if (found) continue;
     std::vector<std::string> names;
     for (const MaterialDescription& material : out->materials) names.push_back(material.name);
-    return Error{ErrorKind::kInput, fmt::format("no material '{}' is drawn in this scene", o->name),
+    return Error{ErrorKind::kInput, fmt::format("no material '{}' is used in this scene", o->name),
                  o->loc, suggest_name(o->name, names)};
   }
   return {};

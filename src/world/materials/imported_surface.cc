@@ -65,7 +65,7 @@ class SurfaceMaker {
       all_repeat = all_repeat && texture->wrap_u == TextureWrap::kRepeat &&
                    texture->wrap_v == TextureWrap::kRepeat;
       if (texture->nearest && !told_nearest_) {
-        leave_out("its texels are blended: sampling the nearest is left out");
+        leave_out("its texels are interpolated: nearest-neighbour sampling is ignored");
         told_nearest_ = true;
       }
     }
@@ -87,10 +87,8 @@ class SurfaceMaker {
     if (texture.uv_set == reference_->uv_set &&
         same_transform(texture.transform, reference_->transform))
       return true;
-    leave_out(
-        fmt::format("its {} texture lies on other coordinates than its first texture and is "
-                    "left out",
-                    what));
+    leave_out(fmt::format(
+        "its {} texture has other coordinates than its first texture and is ignored", what));
     return false;
   }
   int row_of(const TextureRef& texture, const char* what) {
@@ -99,12 +97,12 @@ class SurfaceMaker {
   /// Mean of a texture that the renderer has no place for.
   float mean_of(const TextureRef& texture, const char* what) {
     if (!textures_->has(texture)) return 1;
-    leave_out(fmt::format("of its {} texture only the mean is used", what));
+    leave_out(fmt::format("only the mean of its {} texture is used", what));
     return textures_->mean(texture).x;
   }
   Vec3f mean_color_of(const TextureRef& texture, const char* what) {
     if (!textures_->has(texture)) return {1, 1, 1};
-    leave_out(fmt::format("of its {} texture only the mean is used", what));
+    leave_out(fmt::format("only the mean of its {} texture is used", what));
     return textures_->mean(texture);
   }
 
@@ -157,7 +155,7 @@ class SurfaceMaker {
         in_.specular_color * mean_color_of(in_.specular_color_texture, "specular colour");
     if (color == Vec3f{1, 1, 1}) return;
     if (color.x != color.y || color.y != color.z)
-      leave_out("of its specular colour only the brightness is used");
+      leave_out("only the brightness of its specular colour is used");
     if (in_.transmission_weight > 0) return;  // there the index bends light
     const float f0 = min(sqr((ior - 1) / (ior + 1)) * luminance(color), 0.99f);
     m().ior = (1 + std::sqrt(f0)) / (1 - std::sqrt(f0));
@@ -173,7 +171,7 @@ class SurfaceMaker {
       m().textures.coat_roughness = row_of(in_.coat_roughness_texture, "coat roughness");
     }
     if (m().coat_weight > 0 && in_.coat_normal_texture.ok())
-      leave_out("the coat's normal map is left out: it has the base's");
+      leave_out("the coat's normal map is ignored: the coat uses the base's");
     m().fuzz_weight = in_.fuzz_weight;
     m().fuzz_color = in_.fuzz_color * mean_color_of(in_.fuzz_color_texture, "sheen colour");
     m().fuzz_roughness =
@@ -181,7 +179,7 @@ class SurfaceMaker {
     m().anisotropy = in_.anisotropy;
     m().anisotropy_rotation = in_.anisotropy_rotation / (2 * kPi);
     if (in_.anisotropy > 0 && in_.anisotropy_texture.ok())
-      leave_out("its anisotropy texture is left out");
+      leave_out("its anisotropy texture is ignored");
   }
 
   /// glTF and MTL colour light that goes through by the base colour, once; the renderer colours it
@@ -194,7 +192,7 @@ class SurfaceMaker {
     Vec3f tint = in_.base_color;
     if (textures_->has(in_.base_color_texture)) {
       tint = tint * textures_->mean(in_.base_color_texture);
-      leave_out("light that goes through is coloured by the mean of its base colour texture");
+      leave_out("transmitted light is coloured by the mean of its base colour texture");
     }
     if (in_.thin_walled || !(in_.transmission_depth > 0)) {
       m().transmission_color = tint;
@@ -203,7 +201,7 @@ class SurfaceMaker {
     m().transmission_color = in_.transmission_color;
     m().transmission_depth = in_.transmission_depth * scale_;
     if (luminance(tint) < 0.99f)
-      leave_out("light that goes through is coloured with depth, not by its base colour");
+      leave_out("transmitted light is coloured with depth, not by its base colour");
   }
 
   void set_emission() {
@@ -228,7 +226,7 @@ class SurfaceMaker {
     normal.source.channel = TextureChannel::kColor;
     normal.normal_scale = is_normals ? in_.bump_scale : in_.normal_scale;
     if (usable(normal.source, "normal")) map.normal = textures_->row(normal);
-    if (is_normals) return leave_out("its bump map looks like normals and is used as such");
+    if (is_normals) return leave_out("its bump map looks like a normal map and is used as one");
     map.bump = row_of(in_.bump_texture, "bump");
     m().bump_scale = in_.bump_scale * kBumpShare;
     surface_.bump_by_texture = map.bump >= 0;

@@ -29,8 +29,9 @@ Result<Image8> decode_picture(const ImportedImage& image, uint64_t most) {
     GLOAM_TRY(KtxImage ktx, decode_ktx(b, image.name, most));
     if (ktx.faces.size() == 1) return std::move(ktx.faces[0]);
   }
-  return Error{
-      ErrorKind::kUnsupported, "is none of PNG, JPEG and KTX of bytes", {image.name, 0, 0}};
+  return Error{ErrorKind::kUnsupported,
+               "unsupported image format (expected PNG, JPEG or 8-bit KTX)",
+               {image.name, 0, 0}};
 }
 
 /// Pictures that a material shows; occlusion is no business of a path tracer's.
@@ -131,17 +132,16 @@ Result<ImportedTextures> ImportedTextures::decode(const ModelFile& model, const 
       pixels += static_cast<uint64_t>(image.width) * static_cast<uint64_t>(image.height);
       if (!problems[k].empty())
         out->unsupported.push_back({ErrorKind::kUnsupported,
-                                    fmt::format("{}: a picture is left out: {}", what, problems[k]),
+                                    fmt::format("{}: an image is ignored: {}", what, problems[k]),
                                     {},
                                     "convert it to PNG"});
     }
     if (pixels > left)
-      return Error{
-          ErrorKind::kInput,
-          fmt::format("{}: the pictures have {} million pixels more than there is room for", what,
-                      (pixels - left) / 1000000 + 1),
-          {},
-          "use smaller pictures"};
+      return Error{ErrorKind::kInput,
+                   fmt::format("{}: the images exceed the available memory by {} million pixels",
+                               what, (pixels - left) / 1000000 + 1),
+                   {},
+                   "use smaller images"};
     left -= pixels;
   }
   return made;

@@ -35,7 +35,7 @@ std::string decode_faces(const Texels& texels, ColorSpace color_space, std::vect
   Result<KtxImage> image =
       decode_ktx({texels.data, static_cast<size_t>(texels.width)}, "the KTX file");
   if (!image.ok()) return fmt::format("cannot be read: {}", image.error().to_string());
-  if (image->faces.size() != 1) return "is a KTX file without a picture of bytes";
+  if (image->faces.size() != 1) return "is a KTX file without an 8-bit image";
   image->faces[0].color_space = color_space;  // the role decides, as in MaterialTable::layer
   *faces = std::move(image->faces);
   return "";

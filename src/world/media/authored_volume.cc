@@ -63,7 +63,8 @@ Result<float> density_of(const VolumeOptions& options, const MediumDescription& 
   if (options.density) return static_cast<float>(*options.density);
   const float extinction = medium.mass_extinction[static_cast<size_t>(MediumBand::kGreen)];
   if (!(extinction > 0)) {
-    return volume_error(options, "its medium does not dim green light", "give 'density' instead");
+    return volume_error(options, "its medium does not attenuate green light",
+                        "specify 'density' instead");
   }
   return static_cast<float>(kKoschmieder / *options.visibility) / extinction;
 }
@@ -81,7 +82,7 @@ Status set_grid(const VolumeOptions& options, VolumeFile grid, float scale,
   if (has_shape && (grid.nx != volume->nx || grid.ny != volume->ny || grid.nz != volume->nz)) {
     return volume_error(
         options,
-        fmt::format("its temperatures have {} x {} x {} voxels, its densities {} x {} x {}",
+        fmt::format("its temperatures have {} x {} x {} voxels, but its densities {} x {} x {}",
                     grid.nx, grid.ny, grid.nz, volume->nx, volume->ny, volume->nz));
   }
   volume->nx = grid.nx, volume->ny = grid.ny, volume->nz = grid.nz;
@@ -102,7 +103,7 @@ Status set_grids(const VolumeOptions& options, float density, VolumeDescription*
         placed(check_memory(edge * edge * edge * sizeof(float),
                             fmt::format("volume '{}': a pattern of up to {} voxels along an edge",
                                         options.name, edge),
-                            "lower its resolution"),
+                            "reduce its resolution"),
                options));
     return set_grid(options, make_pattern(*options.pattern, volume->size), density, volume,
                     &volume->density);

@@ -74,7 +74,7 @@ Status check_holder(const ProbeDescription& probe, const Holder& holder) {
   return probe_error(
       probe.options,
       fmt::format("no {} is at [{}, {}, {}]", holder.table, probe.p_B.x, probe.p_B.y, probe.p_B.z),
-      fmt::format("move it into the {} whose '{}' is wanted", holder.table, word));
+      fmt::format("move it into the {} whose '{}' it should measure", holder.table, word));
 }
 
 /// True if a level rectangle around (x, y) holds the place.
@@ -104,14 +104,14 @@ Status check_scene_has(const CompiledWorld& world, const ProbeDescription& probe
   const auto& sky = world.scene.sky;
   if (word == "sun_disc" && !(sky && (sky->sun_elevation || sky->date)))
     return probe_error(probe.options, "the scene's sky has no sun",
-                       "give [sky] a 'sun_elevation', or a date, time and place");
+                       "set 'sun_elevation' of [sky], or a date, time and place");
   return {};
 }
 
 Result<ProbeDescription> describe_probe(const CompiledWorld& world, const ProbeOptions& options) {
   ProbeDescription probe{options, find_probe_quantity(options.quantity)};
   if (mj_name2id(world.model.get(), mjOBJ_SENSOR, options.name.c_str()) >= 0)
-    return probe_error(options, "a sensor of the model has its name", "rename it");
+    return probe_error(options, "a sensor of the model has the same name", "rename it");
   if (probe.quantity->place == ProbePlace::kCamera) {
     GLOAM_TRY_STATUS(check_camera(world, options));
   } else if (probe.quantity->place == ProbePlace::kBodies ||
@@ -123,8 +123,9 @@ Result<ProbeDescription> describe_probe(const CompiledWorld& world, const ProbeO
   } else if (!options.body.empty()) {
     GLOAM_TRY(const std::vector<int> bodies, bodies_of(world, options));
     if (bodies.size() > 1)
-      return probe_error(options, fmt::format("'{}' fits {} bodies", options.body, bodies.size()),
-                         "name the one in whose frame the place is");
+      return probe_error(options,
+                         fmt::format("'{}' matches {} bodies", options.body, bodies.size()),
+                         "specify the body in whose frame the position is given");
     probe.body = bodies[0];
   }
   if (options.position) probe.p_B = *options.position;

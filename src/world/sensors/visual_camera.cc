@@ -33,7 +33,7 @@ CameraDescription model_camera(const mjModel& m, int i, std::vector<Error>* unsu
   const int width = m.cam_resolution[2 * i], height = m.cam_resolution[2 * i + 1];
   if (width > kMaxSide || height > kMaxSide)
     unsupported->push_back({ErrorKind::kUnsupported,
-                            fmt::format("camera '{}' asks for {} x {} pixels; {} x {} are drawn",
+                            fmt::format("camera '{}' requests {} x {} pixels; {} x {} are rendered",
                                         camera.name, width, height, k.width, k.height)});
   else if (width > 1 && height > 1) {  // 1 x 1 is MuJoCo's "not given"
     k.width = width;
@@ -59,7 +59,7 @@ CameraDescription model_camera(const mjModel& m, int i, std::vector<Error>* unsu
     unsupported->push_back({ErrorKind::kUnsupported,
                             fmt::format("camera '{}' has no usable field of view", camera.name),
                             {},
-                            "give it fovy, or sensorsize with focal; 45 is used"});
+                            "set fovy, or sensorsize with focal; 45 is used"});
     fovy = kDefaultFovy;
   }
   set_fovy(fovy, &k);

@@ -239,12 +239,12 @@ class VisualImporter {
     };
     for (const std::string& note : model.notes) add(note);
     if (model.dropped_triangles > 0)
-      add(fmt::format("{} triangles without area are left out", model.dropped_triangles));
+      add(fmt::format("{} triangles without area are ignored", model.dropped_triangles));
     const bool has_triangles = std::any_of(
         model.instances.begin(), model.instances.end(), [&](const ImportedInstance& in) {
           return !model.meshes[static_cast<size_t>(in.mesh)].indices.empty();
         });
-    if (!has_triangles && model.lights.empty()) add("there is nothing to draw in the file");
+    if (!has_triangles && model.lights.empty()) add("the file contains nothing to draw");
   }
 
   /// Fills the rows of meshes that were handed out. The last user of a mesh takes it.
@@ -263,10 +263,11 @@ class VisualImporter {
       const Vec3f half = half_extents(out_->meshes[static_cast<size_t>(baked.row)]);
       half_[baked.row] = half;
       if (max_component(half) < kFarthest) continue;
-      return Error{ErrorKind::kInput,
-                   fmt::format("{}: a mesh is {:.3g} m large", baked.name, 2 * max_component(half)),
-                   {},
-                   "say in 'unit' how many metres one unit of the file is"};
+      return Error{
+          ErrorKind::kInput,
+          fmt::format("{}: a mesh has a size of {:.3g} m", baked.name, 2 * max_component(half)),
+          {},
+          "set 'unit' to the length of one unit of the file in metres"};
     }
     for (const size_t part : parts_) {
       InstanceDescription& instance = out_->instances[part];

@@ -42,7 +42,8 @@ Status check(const AtmosphereOptions& o) {
   }
   if (o.width < 8 || o.width > 8192 || o.height < 4 || o.height > 4096 || o.height % 2 != 0) {
     return option_error(
-        fmt::format("a sky of {} x {} texels: 8 x 4 to 8192 x 4096, an even number of rows",
+        fmt::format("a sky of {} x {} texels is not supported: 8 x 4 to 8192 x 4096, with an even "
+                    "number of rows",
                     o.width, o.height));
   }
   return {};

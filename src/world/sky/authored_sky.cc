@@ -28,10 +28,10 @@ Status read_map(const SkyOptions& options, EnvironmentDescription* out) {
   const Result<ImageF> image = read_float_image(options.file, most);
   if (!image.ok()) return in_sky(options, image.error());
   if (image->width != 2 * image->height) {
-    return sky_error(options,
-                     fmt::format("'{}' has {} x {} pixels; an equirectangular sky is twice as wide "
-                                 "as high",
-                                 name, image->width, image->height));
+    return sky_error(
+        options,
+        fmt::format("'{}' has {} x {} pixels; an equirectangular sky must be twice as wide as high",
+                    name, image->width, image->height));
   }
   out->name = name;
   out->width = image->width;
@@ -44,10 +44,10 @@ Status read_map(const SkyOptions& options, EnvironmentDescription* out) {
     const Vec3f c =
         channels < 3 ? Vec3f{texel[0], texel[0], texel[0]} : Vec3f{texel[0], texel[1], texel[2]};
     if (!std::isfinite(c.x + c.y + c.z)) {
-      return sky_error(options, fmt::format("'{}' holds a value that is not finite in column {}, "
-                                            "row {}",
-                                            name, i % static_cast<size_t>(out->width),
-                                            i / static_cast<size_t>(out->width)));
+      return sky_error(
+          options,
+          fmt::format("'{}' contains a value that is not finite in column {}, row {}", name,
+                      i % static_cast<size_t>(out->width), i / static_cast<size_t>(out->width)));
     }
     out->texels[i] = {above_zero(c.x), above_zero(c.y), above_zero(c.z)};
   }
@@ -57,7 +57,7 @@ Status read_map(const SkyOptions& options, EnvironmentDescription* out) {
   const float level = illuminance(*out, {0, 0, 1});
   if (!(level > 0)) {
     return sky_error(options, fmt::format("'{}' is black above the horizon", name),
-                     "no scale gives it an illuminance");
+                     "no scale can give it an illuminance");
   }
   out->scale = static_cast<float>(*options.illuminance / level);
   return {};

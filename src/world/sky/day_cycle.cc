@@ -17,7 +17,7 @@ constexpr int kFirstOfDay = static_cast<int>((kTwilightEnds - kLowest) * kRowsPe
 
 Vec3f to_sun_at(const DayCycle& day, double time) {
   const Result<SunPosition> sun = sun_position(day.start, day.place, day.speed * time);
-  GLOAM_CHECK(sun.ok(), "the begin of a day has been checked");
+  GLOAM_CHECK(sun.ok(), "the start of a day must be valid");
   return turned_north(sun->to_sun, day.north);
 }
 
@@ -46,7 +46,7 @@ SkyLight sky_of_row(const DayCycle& day, int row) {
   air.to_sun = {static_cast<float>(std::cos(elevation)), 0,
                 static_cast<float>(std::sin(elevation))};
   Result<SkyLight> sky = make_sky(air);
-  GLOAM_CHECK(sky.ok(), "the air of a day has been checked");
+  GLOAM_CHECK(sky.ok(), "the air of a day must be valid");
   return std::move(sky).value();
 }
 

@@ -45,7 +45,8 @@ Status check(const CivilTime& t, const GeoPosition& place) {
   const int last = days_in(t.year, t.month);
   if (t.day < 1 || t.day > last) return field_error("day", t.day, 1, last, " of that month");
   if (!(t.second >= 0 && t.second < 60)) {
-    return Error{ErrorKind::kInput, fmt::format("second {} is not from 0 to below 60", t.second)};
+    return Error{ErrorKind::kInput,
+                 fmt::format("second {} is outside of 0..60, 60 exclusive", t.second)};
   }
   return {};
 }

@@ -69,10 +69,10 @@ Vec3 choose_render_origin(const CompiledWorld& world, std::vector<Error>* notes)
   const Vec3 found{origin[0], origin[1], origin[2]};
   if (is_far(origin) && has_effects(world)) {
     notes->push_back({ErrorKind::kInput,
-                      "the scene lies far from the origin, and has weather, media, water, soil or "
-                      "agents: pictures and scans are only as fine as floats are there",
+                      "the scene is far from the origin and has weather, media, water, soil or "
+                      "agents: images and scans are limited to single precision there",
                       {world.scene.file.string(), 0, 0},
-                      "move it nearer to the origin"});
+                      "move it closer to the origin"});
     return {};
   }
   return is_far(origin) ? found : Vec3{};

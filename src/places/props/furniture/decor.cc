@@ -226,7 +226,7 @@ constexpr PropKind kDecor[] = {
     {"picture", picture, "framed picture on a wall"},
     {"wall_mirror", wall_mirror, "mirror on a wall, round or framed"},
     {"wall_clock", wall_clock, "round clock on a wall"},
-    {"vase", vase, "vase of glazed clay or glass, with dry grass perhaps"},
+    {"vase", vase, "vase of glazed clay or glass, some with dry grass"},
 };
 
 }  // namespace

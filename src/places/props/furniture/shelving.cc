@@ -232,7 +232,7 @@ constexpr PropKind kShelving[] = {
     {"bookshelf", bookshelf, "shelves filled with books and a few ornaments"},
     {"wall_shelf", wall_shelf, "board on brackets at a wall"},
     {"shoe_rack", shoe_rack, "slatted rack for shoes"},
-    {"coat_rack", coat_rack, "pole with hooks, a coat on it perhaps"},
+    {"coat_rack", coat_rack, "pole with hooks, some with a coat"},
 };
 
 }  // namespace

@@ -268,9 +268,9 @@ Prop plate(Workshop& shop) {
 }
 
 constexpr PropKind kTableware[] = {
-    {"mug", mug, "cup with a handle, of coffee perhaps"},
+    {"mug", mug, "cup with a handle, some with coffee"},
     {"bottle", bottle, "bottle of wine or water, or a flask"},
-    {"bowl", bowl, "bowl, of fruit perhaps"},
+    {"bowl", bowl, "bowl, some with fruit"},
     {"plate", plate, "plate, or a few in a stack"},
 };
 

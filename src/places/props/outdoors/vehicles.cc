@@ -177,7 +177,7 @@ Prop cart(Workshop& shop) {
 
 constexpr PropKind kVehicles[] = {
     {"car", car, "hatchback of four metres"},
-    {"cart", cart, "platform with a handle that drives itself, with cartons on it"},
+    {"cart", cart, "self-driving platform with a handle, loaded with cartons"},
 };
 
 }  // namespace

@@ -374,7 +374,7 @@ Prop locker(Workshop& shop) {
 constexpr PropKind kRacks[] = {
     {"pallet_rack", pallet_rack, "one bay of a pallet rack; neighbours at a pitch of its width"},
     {"shelf_rack", stocked_shelf, "boltless shelves with bins and cartons"},
-    {"rack_guard", rack_guard, "bent plate before a rack's upright"},
+    {"rack_guard", rack_guard, "bent plate that protects a rack's upright"},
     {"locker", locker, "steel lockers with hinged doors"},
 };
 

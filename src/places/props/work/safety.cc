@@ -418,7 +418,7 @@ constexpr PropKind kSafety[] = {
     {"bollard", bollard, "steel post bolted to the floor"},
     {"fire_extinguisher", fire_extinguisher, "extinguisher on a stand with its sign"},
     {"wall_extinguisher", wall_extinguisher, "extinguisher on the wall below its sign"},
-    {"exit_sign", exit_sign, "way out, lit; on the wall"},
+    {"exit_sign", exit_sign, "lit exit sign; on the wall"},
     {"hazard_sign", hazard_sign, "warning sign; on the wall"},
     {"first_aid_box", first_aid_box, "cabinet with a hinged door; on the wall"},
     {"wall_phone", wall_phone, "telephone; on the wall"},
