@@ -436,7 +436,7 @@ class Work(ProgramTest):
         model = self.write("m.xml", f"<mujoco><worldbody>{copies}</worldbody></mujoco>")
         for command in (["run", "--out", "out"], ["render"], ["info"], ["check"]):
             begin = []
-            started = lambda: "MuJoCo reads" in self.said() and not begin.append(time.time())  # noqa: E731
+            started = lambda: "loading m.xml in MuJoCo" in self.said() and not begin.append(time.time())  # noqa: E731
             code, stderr = self.stopped_by(signal.SIGINT, *command, model, started=started)
             self.assertEqual(code, 130, stderr)
             self.assertLess(time.time() - begin[0], 5)

@@ -122,11 +122,11 @@ class Evaluate(ProgramTest):
         for estimate, words in ((later, "no poses within"), (bad, "bad.tum:2: "), (self.folder / "none.tum", "none.tum")):
             self.assertIn(words, self.gloam("evaluate", estimate, "--reference", good, expect=1).stderr)
         straight = self.gloam("evaluate", line, "--reference", line, "--json")
-        self.assertIn("one line", straight.stderr)
+        self.assertIn("follow a straight line", straight.stderr)
         self.assertIn("undetermined", straight.stderr)
         self.assertTrue(json.loads(straight.stdout)["align"]["rotation_undetermined"])
         self.assertAlmostEqual(json.loads(straight.stdout)["ate"]["translation_m"]["rmse"], 0)
-        self.assertIn("no two of 9 poses", self.gloam("evaluate", good, "--reference", good, "--rpe-delta", "50", expect=1).stderr)
+        self.assertIn("no two of the 9 poses", self.gloam("evaluate", good, "--reference", good, "--rpe-delta", "50", expect=1).stderr)
         self.gloam("evaluate", good, "--reference", good, "--rpe-delta", "0", expect=2)
         self.gloam("evaluate", good, "--reference", good, "--align", "sim4", expect=2)
         self.gloam("evaluate", good, expect=2)

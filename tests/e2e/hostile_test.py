@@ -108,7 +108,7 @@ class Meshes(HostileTest):
         self.put("a.obj", OBJ[:13])
         self.refuses(visual("a.obj"), "a.obj:2")
         self.put("a.obj", OBJ[:-5])
-        self.draws(visual("a.obj"), "1 triangles without area are left out")
+        self.draws(visual("a.obj"), "1 triangles without area are ignored")
 
     def test_vertices_that_are_no_numbers(self):
         self.put("a.ply", ply(["0 0 0", "nan 0 0", "0 1 0"]))
@@ -122,7 +122,7 @@ class Meshes(HostileTest):
 
     def test_nothing_to_draw(self):
         self.put("flat.obj", FLAT)
-        self.draws(visual("flat.obj"), "3 triangles without area are left out")
+        self.draws(visual("flat.obj"), "3 triangles without area are ignored")
         for name, content in {"empty.stl": stl([]), "empty.ply": ply([], ""), "empty.obj": "v 0 0 0\n"}.items():
             with self.subTest(name):
                 self.put(name, content)
@@ -155,9 +155,9 @@ class Pictures(HostileTest):
         self.put("a.obj", "mtllib a.mtl\nvt 0 0\nvt 1 0\nvt 0 1\nv 0 0 0\nv 1 0 0\nv 0 0 1\nusemtl m\nf 1/1 2/2 3/3\n")
         self.put("a.mtl", "newmtl m\nmap_Kd a.png\n")
         self.put("a.png", png(60, 60))
-        self.assertNotIn("left out", self.draws(visual("a.obj")).stderr)
+        self.assertNotIn("is ignored", self.draws(visual("a.obj")).stderr)
         self.put("a.png", png(60, 60)[:120])
-        self.draws(visual("a.obj"), "a picture is left out", "a.png")
+        self.draws(visual("a.obj"), "an image is ignored", "a.png")
 
     def test_skies(self):
         sky = '[sky]\nfile = "a.{}"\n'

@@ -43,8 +43,8 @@ class Notes(ProgramTest):
         self.write("mm.obj", box((0, 0, 0), (20000, 20000, 100)))
         scene = self.write("s.toml", "[environment]\nfile = 'mm.obj'\n[[robot]]\nname = 'box'\nfile = 'ball.xml'\nposition = [1, 1, 200]\n")
         self.write("ball.xml", BALL)
-        self.assert_told(scene, "the environment is 2e+04 m large")
-        self.assert_told(scene, "node 'box' is called 'box_2' here")
+        self.assert_told(scene, "the environment has a size of 2e+04 m")
+        self.assert_told(scene, "node 'box' is renamed to 'box_2'")
         notes = json.loads(self.gloam("info", scene, "--json").stdout)["notes"]
         self.assertTrue(any("unit = 0.001" in note["hint"] for note in notes), notes)
         self.assertTrue(all(note["line"] == 1 for note in notes), notes)
@@ -56,14 +56,14 @@ class Notes(ProgramTest):
     def test_of_height_fields(self):
         self.write("g.obj", box((0, 0, 0), (1, 1, 0.2)))
         scene = self.write("s.toml", "[[hfield]]\nname = 'g'\nfile = 'g.obj'\nlow = [-5, -5]\nhigh = [5, 5]\n")
-        self.assert_told(scene, "samples met nothing: most of this ground is made up")
+        self.assert_told(scene, "samples missed the mesh: most of this ground is filled in")
         self.assertIn("12 triangles drawn", self.gloam("info", scene).stdout)
 
     def test_of_robots_in_generated_places(self):
         self.write("ball.xml", BALL)
         text = "[environment.bedroom]\nseed = 1\n[[robot]]\nname = 'go'\nfile = 'ball.xml'\nposition = [0, 0, {}]\n"
         self.assertEqual(self.gloam("info", self.write("good.toml", text.format(0.2))).stderr, "")
-        self.assert_told(self.write("s.toml", text.format(0.02)), "robot 'go' begins 0.08 m deep in ")
+        self.assert_told(self.write("s.toml", text.format(0.02)), "robot 'go' starts 0.08 m deep in ")
 
     def test_what_is_not_supported_is_told_too(self):
         self.write("a.xml", BALL.replace("<worldbody>", "<option integrator='Euler'/><worldbody>"))
@@ -82,7 +82,7 @@ class Rooms(ProgramTest):
         scene = self.write("s.toml", "[environment]\nfile = 'room.obj'\n[[robot]]\nname = 'go'\nfile = 'ball.xml'\nposition = [2, 2, 0.1]\n")
         result = self.gloam("run", scene, "--duration", "1", "--output", "metrics", "--out", "run")
         self.assertIn("'room' looks inwards: it is a room", result.stderr)
-        self.assertNotIn("begins", result.stderr)
+        self.assertNotIn("robot 'go' starts", result.stderr)
 
 
 class Convert(ProgramTest):

@@ -93,7 +93,7 @@ class Interrupt(ProgramTest):
     def test_a_conversion(self):
         mesh = self.write("star.obj", star(72))
         self.stopped(signal.SIGTERM, "convert", mesh, "--colliders", "hulls", "--concavity", "0.01", "--max-hulls", "256",
-                     started=lambda: "physical" in (self.folder / "stderr.txt").read_text(), after=2)
+                     started=lambda: "building colliders" in (self.folder / "stderr.txt").read_text(), after=2)
 
 
 if __name__ == "__main__":

@@ -59,7 +59,7 @@ class Metrics(ProgramTest):
         for command in (["info", scene], ["info", scene, "--metrics"], ["run", scene, "--out", "run"]):
             result = self.gloam(*command, expect=1)
             self.assertIn("s.toml:9", result.stderr)
-            self.assertIn("in column 20: this robot has no 'velocty' (did you mean 'velocity'?)", result.stderr)
+            self.assertIn("column 20: this robot has no 'velocty' (did you mean 'velocity'?)", result.stderr)
             self.assertFalse((self.folder / "run").exists())
 
 

@@ -70,7 +70,7 @@ class Probes(ProgramTest):
         scene = self.scene("[[probe]]\nname = 'e'\nquantity = 'exposure'\nposition = [0, 0, 1]\n")
         said = self.gloam("info", scene, expect=1).stderr
         self.assertIn("s.toml:25:", said)
-        self.assertIn("give 'camera'", said)
+        self.assertIn("specify 'camera'", said)
 
 
 if __name__ == "__main__":

@@ -49,7 +49,7 @@ class WordsTest(ProgramTest):
 
     def test_export_says_what_it_leaves_out(self):
         scene = self.write("lamp.toml", "[environment]\nfile = 'pendulum.xml'\n[[light]]\nname = 'l'\ntype = 'point'\nposition = [0, 0, 3]\nflux = 100\n")
-        self.assertIn("lamp.toml:3:1: 1 [[light]] is not in the export", self.gloam("export", scene, "--out", "out").stderr)
+        self.assertIn("lamp.toml:3:1: 1 [[light]] is not exported", self.gloam("export", scene, "--out", "out").stderr)
 
 
 if __name__ == "__main__":

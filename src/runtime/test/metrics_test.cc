@@ -385,23 +385,23 @@ TEST(Metrics, RefusalsTellFileLineAndColumn) {
     return metrics.ok() ? std::string() : metrics.error().to_string();
   };
   const MetricRefusal kRefusals[] = {
-      {"1 +", "column 4", "ends too early", ""},
+      {"1 +", "column 4", "unexpected end", ""},
       {"norm(body(\"a/bal\").velocity)", "column 6", "no body 'a/bal'", "a/ball"},
       {"norm(body(\"a/ball\").velocty)", "column 21", "no 'velocty'", "velocity"},
-      {"body(\"a/ball\")", "column 1", "which number", ".position"},
+      {"body(\"a/ball\")", "column 1", "body 'a/ball' needs a field", ".position"},
       {"body(\"a/ball\").position", "column 1", "not a vector", "norm"},
       {"body(\"a/ball\").position.w", "column 25", "'.w'", ".x"},
-      {"body.position.x", "column 1", "of what", "body(\"NAME\")"},
+      {"body.position.x", "column 1", "'body' needs a name", "body(\"NAME\")"},
       {"joint(\"a/ball\").position", "column 1", "neither a hinge nor a slide", "body"},
       {"sensor(\"x\")", "column 1", "no sensor 'x'", ""},
-      {"tme", "column 1", "no quantity 'tme'", "time"},
-      {"robot.speed", "column 1", "no robot's", "robots"},
+      {"tme", "column 1", "unknown quantity 'tme'", "time"},
+      {"robot.speed", "column 1", "the metric has no robot", "robots"},
       {"robot(\"b\").speed", "column 1", "no robot 'b'", "a"},
       {"robot(\"a\").sped", "column 12", "no 'sped'", "speed"},
       {"robot(\"a\").body(\"bll\").up.z", "column 12", "a/bll", "ball"},
-      {"contacts(\"a/bal\").count", "column 1", "no geom and no body", "a/ball"},
+      {"contacts(\"a/bal\").count", "column 1", "no geom or body", "a/ball"},
       {"contacts(\"a/*\").size", "column 17", "contacts have no", ""},
-      {"bdy(\"a/ball\").position.x", "column 1", "no function 'bdy'", "body"},
+      {"bdy(\"a/ball\").position.x", "column 1", "unknown function 'bdy'", "body"},
   };
   for (const auto& [value, place, message, hint] : kRefusals) {
     const std::string error = error_of(metric("m", value));
@@ -412,7 +412,7 @@ TEST(Metrics, RefusalsTellFileLineAndColumn) {
   }
   EXPECT_THAT(error_of(metric("m", "1", "robots = 'x'")), HasSubstr("no robot 'x'"));
   EXPECT_THAT(error_of(metric("m", "1", "rate = 200")), HasSubstr("metrics_rate"));
-  EXPECT_THAT(error_of(metric("m", "1") + metric("m", "2")), HasSubstr("two metrics 'm'"));
+  EXPECT_THAT(error_of(metric("m", "1") + metric("m", "2")), HasSubstr("two metrics named 'm'"));
   EXPECT_THAT(error_of("[[goal]]\nrobot = 'x'\nposition = [0, 0, 0]\n"), HasSubstr("no robot 'x'"));
   const auto scene_error = [&](const std::string& more) {
     const auto read = load_scene(folder.write("bad.toml", scene + more));
@@ -462,7 +462,7 @@ TEST(Metrics, ARunWritesThemAndIsNoOtherForIt) {
   request.out = folder.path() / "bad";
   const auto refused = run_and_record(flight(folder, recorded + metric("m", "tme")), request, {});
   ASSERT_FALSE(refused.ok());
-  EXPECT_THAT(refused.error().to_string(), HasSubstr("no quantity 'tme'"));
+  EXPECT_THAT(refused.error().to_string(), HasSubstr("unknown quantity 'tme'"));
   EXPECT_FALSE(std::filesystem::exists(request.out)) << "before anything is written";
 }
 

@@ -157,18 +157,18 @@ TEST(ProbeErrors, SayWhatWouldBeRight) {
     const char *probe, *what, *remedy;
   } kRefused[] = {
       {"quantity = \"wnd\"\n", "wnd", "did you mean 'wind'"},
-      {"quantity = \"exposure\"\nposition = [0, 0, 1]\n", "has a 'position'", "give 'camera'"},
-      {"quantity = \"exposure\"\n", "says not where", "give 'camera'"},
-      {"quantity = \"wind\"\ncamera = \"eye\"\n", "has a 'camera'", "give 'position'"},
-      {"quantity = \"wind\"\nposition = [0, 0, 1]\nnormal = [0, 0, 1]\n", "has a 'normal'", "give"},
-      {"quantity = \"contact_force\"\nposition = [0, 0, 1]\n", "has a 'position'", "'agent'"},
-      {"quantity = \"contact_force\"\nbody = \"ball\"\nagent = \"ada\"\n", "in two ways", "give"},
-      {"quantity = \"illuminance\"\nposition = [0, 0, 1]\nnormal = [0, 0, 0]\n", "no direction",
+      {"quantity = \"exposure\"\nposition = [0, 0, 1]\n", "does not support 'position'", "specify 'camera'"},
+      {"quantity = \"exposure\"\n", "does not specify a place", "specify 'camera'"},
+      {"quantity = \"wind\"\ncamera = \"eye\"\n", "does not support 'camera'", "specify 'position'"},
+      {"quantity = \"wind\"\nposition = [0, 0, 1]\nnormal = [0, 0, 1]\n", "does not support 'normal'", "specify"},
+      {"quantity = \"contact_force\"\nposition = [0, 0, 1]\n", "does not support 'position'", "'agent'"},
+      {"quantity = \"contact_force\"\nbody = \"ball\"\nagent = \"ada\"\n", "two places", "specify"},
+      {"quantity = \"illuminance\"\nposition = [0, 0, 1]\nnormal = [0, 0, 0]\n", "of length 0",
        "'normal'"},
       {"quantity = \"exposure\"\ncamera = \"eyes\"\n", "no camera 'eyes'", "did you mean 'eye'"},
       {"quantity = \"contact_force\"\nbody = \"bal\"\n", "no body 'bal'", "did you mean 'ball'"},
       {"quantity = \"contact_force\"\nagent = \"ada\"\n", "no agent 'ada'", "no agents"},
-      {"quantity = \"wind\"\nbody = \"b*\"\n", "fits 2 bodies", "name the one"},
+      {"quantity = \"wind\"\nbody = \"b*\"\n", "matches 2 bodies", "specify the body"},
       {"quantity = \"water_height\"\nposition = [0, 0, 0]\n", "no [[water]]", "add a [[water]]"},
       {"quantity = \"sinkage\"\nbody = \"ball\"\n", "no [[soil]]", "add a [[soil]]"},
       {"quantity = \"gas_density\"\nposition = [7, 0, 1]\n", "no [[gas]] is at [7, 0, 1]",
@@ -196,7 +196,7 @@ TEST(ProbeErrors, ANameOfASensorIsTaken) {
   ASSERT_TRUE(scene.ok());
   const auto world = World::compile(*scene);
   ASSERT_FALSE(world.ok());
-  EXPECT_THAT(world.error().to_string(), HasSubstr("a sensor of the model has its name"));
+  EXPECT_THAT(world.error().to_string(), HasSubstr("a sensor of the model has the same name"));
 }
 
 }  // namespace

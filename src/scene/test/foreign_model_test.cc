@@ -27,9 +27,9 @@ TEST(ForeignModel, IsNamedWithItsRemedy) {
       "<?xml version='1.0'?><robot name='g'><virtual_joint name='v' type='fixed' parent_frame='w' "
       "child_link='b'/></robot>";
   for (const Case& c : {
-           Case{"r.srdf", srdf, "is an SRDF, not a URDF", "give the URDF"},
+           Case{"r.srdf", srdf, "is an SRDF, not a URDF", "use the robot's URDF"},
            Case{"r.urdf", "<robot name='g'><disable_collisions link1='a' link2='b'/></robot>",
-                "is an SRDF, not a URDF", "give the URDF"},
+                "is an SRDF, not a URDF", "use the robot's URDF"},
            Case{"r.urdf", "<robot name='g'/>", "is an empty robot", "xacro"},
            Case{"r.urdf", "<robot name='g'><material name='m'/></robot>", "empty robot", "xacro"},
            Case{"r.urdf", "<robot name='g'><xacro:include filename='a'/></robot>",
@@ -42,7 +42,7 @@ TEST(ForeignModel, IsNamedWithItsRemedy) {
            Case{"r.xml", "\n<HTML><br></HTML>", "is a web page", "raw"},
            Case{"r.urdf", "<launch><node/></launch>", "is a ROS launch file", "URDF"},
            Case{"r.xml", "<COLLADA/>", "is a COLLADA mesh", "[[visual]]"},
-           Case{"r.xml", "<mujocoinclude/>", "is a part of an MJCF", "includes it"},
+           Case{"r.xml", "<mujocoinclude/>", "is an MJCF fragment", "includes it"},
            Case{"r.proto", "#VRML_SIM R2023b utf8\n", "Webots", "export"},
            Case{"r.json", "{\"a\": 1}", "is JSON", "TOML"},
            Case{"r.yaml", "---\na: 1\n", "is YAML", "TOML"},
@@ -68,14 +68,14 @@ TEST(UrdfText, NotesTheElementsThatAreLeftOut) {
   ASSERT_TRUE(urdf.ok());
   std::string notes;
   for (const Error& note : urdf->notes) notes += note.to_string() + "\n";
-  EXPECT_THAT(notes, HasSubstr("r.urdf:3: <transmission> is left out: joints have no motors or "
+  EXPECT_THAT(notes, HasSubstr("r.urdf:3: <transmission> is ignored: joints have no motors or "
                                "gears of their own (2 of them)"));
-  EXPECT_THAT(notes, HasSubstr("r.urdf:5: <ros2_control> is left out"));
-  EXPECT_THAT(notes, HasSubstr("r.urdf:6: <gazebo> is left out"));
-  EXPECT_THAT(notes, HasSubstr("r.urdf:2: <safety_controller> is left out"));
-  EXPECT_THAT(notes, HasSubstr("r.urdf:2: <calibration> is left out"));
-  EXPECT_THAT(notes, HasSubstr("r.urdf:1: <sensor> is left out"));
-  EXPECT_THAT(notes, HasSubstr("<made_up> is left out"));
+  EXPECT_THAT(notes, HasSubstr("r.urdf:5: <ros2_control> is ignored"));
+  EXPECT_THAT(notes, HasSubstr("r.urdf:6: <gazebo> is ignored"));
+  EXPECT_THAT(notes, HasSubstr("r.urdf:2: <safety_controller> is ignored"));
+  EXPECT_THAT(notes, HasSubstr("r.urdf:2: <calibration> is ignored"));
+  EXPECT_THAT(notes, HasSubstr("r.urdf:1: <sensor> is ignored"));
+  EXPECT_THAT(notes, HasSubstr("<made_up> is ignored"));
   EXPECT_EQ(notes.find("mimic"), std::string::npos);
 }
 

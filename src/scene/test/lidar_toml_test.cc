@@ -96,7 +96,7 @@ TEST_F(LidarToml, SaysWhatIsWrongAndWhere) {
   EXPECT_THAT(error_of("preset = \"VLP-61\""), HasSubstr("VLP-16"));
   EXPECT_THAT(error_of("preset = \"VLP-61\""), HasSubstr("scene.toml:4"));
   EXPECT_THAT(error_of("wavelength = 1064"), HasSubstr("905 and 1550"));
-  EXPECT_THAT(error_of("min_range = 5\nmax_range = 2"), HasSubstr("more than"));
+  EXPECT_THAT(error_of("min_range = 5\nmax_range = 2"), HasSubstr("greater than"));
   EXPECT_THAT(error_of("azimuth = [90, -90]"), HasSubstr("from < to"));
   EXPECT_THAT(error_of("elevations = []"), HasSubstr("rings"));
   EXPECT_THAT(error_of("elevations = [91]"), HasSubstr("from -90 to 90"));

@@ -210,25 +210,25 @@ TEST(MjcfDocument, ErrorsNameLineAndWhatWasMeant) {
   EXPECT_EQ(wrong("<geom szie=\"1\"/>"),
             "m.xml:3: <geom> has no attribute 'szie' (did you mean 'size'?)");
   EXPECT_EQ(wrong("<gem size=\"1\"/>"),
-            "m.xml:3: <gem> may not stand in <body> (did you mean <geom>?)");
+            "m.xml:3: <gem> is not allowed in <body> (did you mean <geom>?)");
   EXPECT_EQ(wrong("<geom size=\"big\"/>"),
-            "m.xml:3: <geom> size=\"big\" has 'big', which is no number; it takes 1 to 3 numbers "
-            "[m]");
+            "m.xml:3: <geom> size=\"big\" contains 'big', which is not a number; expected 1 to 3 "
+            "numbers [m]");
   EXPECT_EQ(wrong("<motor/>"),
-            "m.xml:3: <motor> may not stand in <body> (it stands in <actuator>, <default>)");
+            "m.xml:3: <motor> is not allowed in <body> (it is allowed in <actuator>, <default>)");
   EXPECT_EQ(wrong("<body><inertial/><inertial/></body>"),
-            "m.xml:3: <inertial> stands twice in <body>");
+            "m.xml:3: <inertial> appears twice in <body>");
   EXPECT_EQ(Document::from_xml("<robot/>", "r.urdf").error().to_string(),
-            "r.urdf:1: the top element is <robot>, and MJCF's is <mujoco>");
+            "r.urdf:1: the root element is <robot>, but MJCF starts with <mujoco>");
   EXPECT_EQ(Document::from_toml("[mujoco]\n[[mujoco.worldbody.geom]]\nszie = 1\n", "m.toml")
                 .error()
                 .to_string(),
             "m.toml:3:8: <geom> has no attribute 'szie' (did you mean 'size'?)");
   EXPECT_EQ(Document::from_toml("[robot]\n[mujoco]\n", "m.toml").error().to_string(),
-            "m.toml:1:1: 'robot' stands beside [mujoco] (a model in TOML is all below [mujoco])");
+            "m.toml:1:1: 'robot' is outside of [mujoco] (a TOML model has only the table [mujoco])");
   Document lacking = Document::make("m");
   Mujoco(lacking.root()).sensor().add_touch().set_name("t");
-  EXPECT_EQ(lacking.check().error().to_string(), "<touch> 't' lacks 'site': text");
+  EXPECT_EQ(lacking.check().error().to_string(), "<touch> 't' is missing 'site': text");
   Mujoco(lacking.root()).sensor().children()[0].remove();
   EXPECT_TRUE(lacking.check().ok());
 }

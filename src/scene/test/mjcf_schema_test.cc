@@ -117,11 +117,11 @@ TEST(MjcfSchema, ValuesAreCheckedAndErrorsHelp) {
   EXPECT_EQ(wrong("mujoco/body/geom", "size", "1 2 3"), "fine");
   EXPECT_EQ(wrong("mujoco/body/geom", "size", " +.5\n 1e-3 "), "fine");
   EXPECT_EQ(wrong("mujoco/body/geom", "size", "1 2 3 4"),
-            "size=\"1 2 3 4\" is too long; it takes 1 to 3 numbers [m]");
+            "size=\"1 2 3 4\" is too long; expected 1 to 3 numbers [m]");
   EXPECT_EQ(wrong("mujoco/body/geom", "group", "1.5"),
-            "group=\"1.5\" has '1.5', which is no whole number; it takes a whole number");
+            "group=\"1.5\" contains '1.5', which is not a whole number; expected a whole number");
   EXPECT_EQ(wrong("mujoco/body/joint", "type", "hing"),
-            "type=\"hing\" is not a keyword of it; it takes one of free, ball, slide, hinge (did "
+            "type=\"hing\" is not a valid keyword; expected one of free, ball, slide, hinge (did "
             "you mean 'hinge'?)");
   EXPECT_EQ(wrong("mujoco/body/camera", "output", "rgb depth"), "fine");
 }

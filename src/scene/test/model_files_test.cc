@@ -81,7 +81,7 @@ TEST(UrdfText, BoundsTheDepthOfLinks) {
     return text.ok() ? "" : text.error().to_string();
   };
   EXPECT_EQ(error_of(511), "");
-  EXPECT_THAT(error_of(2000), HasSubstr("links hang from each other more than 512 deep"));
+  EXPECT_THAT(error_of(2000), HasSubstr("the chain of links is more than 512 deep"));
   EXPECT_THAT(error_of(2000), HasSubstr("r.urdf:514"));
 }
 
@@ -90,7 +90,7 @@ TEST(XmlScan, RefusesWhatEndsMuJoCosProcess) {
     const Result<XmlScan> scan = scan_model_xml("<mujoco>\n" + text + "</mujoco>", "m.xml");
     return scan.ok() ? "" : scan.error().to_string();
   };
-  EXPECT_EQ(error_of("<asset><model name='a'/></asset>"), "m.xml:2: <model> lacks 'file'");
+  EXPECT_EQ(error_of("<asset><model name='a'/></asset>"), "m.xml:2: <model> is missing 'file'");
   EXPECT_EQ(error_of("<equality><connect body1='b' anchor=' '/></equality>"),
             "m.xml:2: <connect> has an empty 'anchor': it takes 3 numbers");
   EXPECT_EQ(error_of("<worldbody><flexcomp><plugin plugin=''/></flexcomp></worldbody>"),

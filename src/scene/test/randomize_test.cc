@@ -218,21 +218,21 @@ TEST(Randomize, SaysWhatIsWrong) {
   EXPECT_EQ(complaint(entry("light.lamp_1.flux", "uniform = [1, 2]")), "fine");
   expect(entry("light.lamp_1.fluxx", "uniform = [1, 2]"), "did you mean 'flux'");
   expect(entry("light.lamp_9.flux", "uniform = [1, 2]"), "there is no light 'lamp_9'");
-  expect(entry("light.lamp_1.flux", ""), "needs one distribution");
-  expect(entry("light.lamp_1.flux", "uniform = [1, 2]\nnormal = [1, 2]"), "needs one");
+  expect(entry("light.lamp_1.flux", ""), "needs exactly one distribution");
+  expect(entry("light.lamp_1.flux", "uniform = [1, 2]\nnormal = [1, 2]"), "needs exactly one");
   expect(entry("light.lamp_1.flux", "uniform = [1]"), "needs two values");
   expect(entry("light.lamp_1.flux", "uniform = [2, 1]"), "above the second");
   expect(entry("light.lamp_1.flux", "uniform = [-2, -1]"), "must be");
   expect(entry("light.lamp_1.flux", "log_uniform = [0, 1]"), "above 0");
   expect(entry("light.lamp_1.flux", "uniform = ['a', 'b']"), "neither a number");
-  expect(entry("light.lamp_1.flux", "uniform = [[1, 1], [2, 2]]"), "is 1 numbers, not 2");
-  expect(entry("light.lamp_1.name", "uniform = [1, 2]"), "is no number");
+  expect(entry("light.lamp_1.flux", "uniform = [[1, 1], [2, 2]]"), "has 1 numbers, not 2");
+  expect(entry("light.lamp_1.name", "uniform = [1, 2]"), "is not a number");
   expect(entry("light.lamp_1.name", "choice = [1]"), "must be a string");
   expect(entry("light.lamp_1.color", "choice = [[1, 1, 1]]\nweights = [1, 2]"), "one weight");
-  expect(entry("sky.time", "uniform = [1, 2]"), "no time of day");
+  expect(entry("sky.time", "uniform = [1, 2]"), "not a time of day");
   expect(entry("sky.latitude", "operation = 'add'\nuniform = ['a', 2]"), "neither a number");
   expect(entry("sky.turbidity", "operation = 'scale'\nuniform = [1, 2]"),
-         "has no value that could be changed");
+         "has no value to change");
   expect(entry("override.a.joint.hip.damping", "operation = 'scale'\nuniform = [1, 2]"),
          "cannot be added to or scaled");
   expect(entry("override.a.joint", "uniform = [1, 2]"), "override");
@@ -270,7 +270,7 @@ TEST(Randomize, NoSeedFailsWhereAnotherDoesNot) {
   expect(entry("material.plaster*.roughness", "uniform = [0, 2]"), "'roughness' is 2");
   expect(entry("material.plaster*.colour", "choice = [[1, 1, 1]]"), "unknown option 'colour'");
   expect(entry("environment.warehouse.length", "uniform = [20, 30]"),
-         "an environment is one thing");
+         "must have either a file or one generator");
   expect(entry("override.a.joint", "choice = [1, 2]"), "override");
   // What is kept within the range, and dice that end on it.
   EXPECT_EQ(complaint(entry("environment.house.rooms", "normal = [3, 9]")), "fine");
@@ -286,7 +286,7 @@ TEST(Randomize, WhatMakesTheSceneInvalidIsNamed) {
   const Status status = draw(&scene, &drawn);
   ASSERT_FALSE(status.ok());
   EXPECT_NE(status.error().message.find("[[randomize]] of 'camera.front.look_at': camera 'front' "
-                                        "looks at the point it stands in"),
+                                        "looks at its own position"),
             std::string::npos)
       << status.error().to_string();
   EXPECT_EQ(status.error().loc.line, scene.randomize[1].loc.line);
@@ -300,7 +300,7 @@ TEST(Randomize, TellsOfAPatternThatNothingFits) {
   };
   const std::string text = said("material.plastr*.roughness");
   EXPECT_NE(text.find("scene.toml:"), std::string::npos) << text;
-  EXPECT_NE(text.find("'material.plastr*.roughness' fits nothing"), std::string::npos) << text;
+  EXPECT_NE(text.find("'material.plastr*.roughness' matches nothing"), std::string::npos) << text;
   EXPECT_EQ(said("material.w*.roughness"), "");
 }
 

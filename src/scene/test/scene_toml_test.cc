@@ -153,13 +153,13 @@ INSTANTIATE_TEST_SUITE_P(
             "file_is_folder", "[[robot]]\nname = \"a\"\nfile = \".\"\n", {"'.' is not a file"}},
         BadScene{"file_is_scene",
                  "[[robot]]\nname = \"a\"\nfile = \"scene.toml\"\n",
-                 {"'scene.toml' is a scene; a model is wanted here"}},
+                 {"'scene.toml' is a scene, but a model is expected here"}},
         BadScene{"network",
                  "[environment]\nfile = \"http://example.org/x.xml\"\n",
-                 {"only files are read"}},
+                 {"only local files are supported"}},
         BadScene{"file_scheme",
                  "[environment]\nfile = \"file:///etc/passwd\"\n",
-                 {"only files are read"}},
+                 {"only local files are supported"}},
         BadScene{"outside",
                  "[environment]\nfile = \"../../../../../../../etc/passwd\"\n",
                  {"lies outside", "--root"}},
@@ -190,7 +190,7 @@ INSTANTIATE_TEST_SUITE_P(
                  {"both 'look_at' and 'orientation'"}},
         BadScene{"look_at_itself",
                  "[[camera]]\nname = \"c\"\nlook_at = [0, 0, 0]\n",
-                 {"looks at the point it stands in"}},
+                 {"looks at its own position"}},
         BadScene{"body_and_track",
                  "[[camera]]\nname = \"c\"\nbody = \"x\"\ntrack = \"x\"\n",
                  {"both 'body' and 'track'"}},
@@ -207,7 +207,7 @@ INSTANTIATE_TEST_SUITE_P(
             "goals_out_of_order",
             "[[robot]]\nname = \"a\"\nfile = \"robot.xml\"\n[robot.controller]\ntype = \"trot\"\n"
             "[[robot.controller.goals]]\ntime = 2\n[[robot.controller.goals]]\ntime = 1\n",
-            {"scene.toml:8", "order the goals by time"}},
+            {"scene.toml:8", "sort the goals by time"}},
         BadScene{"option_of_another_controller",
                  "[[robot]]\nname = \"a\"\nfile = \"robot.xml\"\n[robot.controller]\nkp = 40\n"
                  "type = \"trot\"\n",
@@ -217,7 +217,7 @@ INSTANTIATE_TEST_SUITE_P(
             "[[robot]]\nname = \"a\"\nfile = \"robot.xml\"\n[robot.controller]\ntype = \"none\"\n"
             "rat = 3\n",
             {"scene.toml:6", "unknown key 'rat'", "did you mean 'rate'?"}},
-        BadScene{"nothing_in_it", "[sim]\nduration = 1\n", {"nothing in it"}}),
+        BadScene{"nothing_in_it", "[sim]\nduration = 1\n", {"the scene is empty"}}),
     [](const auto& info) { return info.param.what; });
 
 TEST_F(SceneToml, SurvivesDeepNesting) {

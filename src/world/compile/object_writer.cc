@@ -129,8 +129,8 @@ class ConvertWatch {
   ConvertWatch(const MeshObjects& objects, CompileProgress* progress) {
     const std::vector<MeshObject>& all = objects.objects;
     const std::string what = all.size() == 1
-                                 ? fmt::format("making colliders of '{}'", all[0].options.name)
-                                 : fmt::format("making colliders of {} meshes", all.size());
+                                 ? fmt::format("building colliders for '{}'", all[0].options.name)
+                                 : fmt::format("building colliders for {} meshes", all.size());
     double expected = 0;  // CoACD takes one mesh at a time
     for (const MeshObject& object : all) expected += expected_seconds(object);
     if (progress != nullptr) progress->begin(what, kConvertWeight, expected);

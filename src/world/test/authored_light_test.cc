@@ -271,7 +271,7 @@ TEST_F(AuthoredLight, NamesWhatIsNotThereOrDamaged) {
   dark.replace(dark.find("500 500 100 100 100"), 19, "0 0 0 0 0");
   folder_.write("dark.ies", dark);
   EXPECT_THAT(error_of({.name = "a", .type = "point", .ies = folder_.path() / "dark.ies"}),
-              HasSubstr("gives no light"));
+              HasSubstr("emits no light"));
   folder_.write("bad.obj", "f 1 2 3\n");
   EXPECT_THAT(
       error_of({.name = "a", .type = "mesh", .flux = 1, .file = folder_.path() / "bad.obj"}),

@@ -141,7 +141,7 @@ TEST_F(AuthoredVolume, WrongGridsAndMediaAreClearErrors) {
       error_of({.name = "a", .size = {1, 1, 1}, .medium = "smog", .density = 1}),
       AllOf(HasSubstr("scene.toml:7"), HasSubstr("there is no medium 'smog'"), HasSubstr("smoke")));
   EXPECT_THAT(error_of({.name = "a", .size = {1, 1, 1}, .mass_extinction = {0}, .visibility = 5}),
-              HasSubstr("does not dim green light"));
+              HasSubstr("does not attenuate green light"));
   folder_.write("huge.npy", npy_file(npy_head("1024, 1024, 513"), ""));
   EXPECT_THAT(error_of({.name = "a",
                         .size = {1, 1, 1},

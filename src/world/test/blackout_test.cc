@@ -94,9 +94,9 @@ TEST_F(Blackout, LeavesTheSunAlone) {
 
 TEST_F(Blackout, NamesThatNothingHasAreErrors) {
   EXPECT_THAT(error_of({.at = 5, .except = {"headlmap"}}),
-              AllOf(HasSubstr("scene.toml:7"), HasSubstr("called 'headlmap'"),
+              AllOf(HasSubstr("scene.toml:7"), HasSubstr("named 'headlmap'"),
                     HasSubstr("did you mean 'headlamp'?")));
-  EXPECT_THAT(error_of({.at = 5, .emergency = {"wall"}}), HasSubstr("called 'wall'"));
+  EXPECT_THAT(error_of({.at = 5, .emergency = {"wall"}}), HasSubstr("named 'wall'"));
   EXPECT_EQ(error_of({.at = 5, .except = {"nothing*"}}), "");
 }
 

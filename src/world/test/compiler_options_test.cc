@@ -128,7 +128,7 @@ TEST_F(CompilerOptions, ThatAreLeftOutAreNoted) {
   ASSERT_TRUE(scene.ok()) << scene.error().to_string();
   std::string notes;
   for (const Error& note : scene->info().notes) notes += note.to_string() + "\n";
-  EXPECT_THAT(notes, HasSubstr("r.xml:1: robot 'a': 'fusestatic' is left out"));
+  EXPECT_THAT(notes, HasSubstr("r.xml:1: robot 'a': 'fusestatic' is ignored"));
 }
 
 }  // namespace

@@ -60,7 +60,7 @@ TEST_F(FiniteModel, WhatIsPlacedSizedOrColouredByNoNumberIsRefused) {
   for (const auto& [attributes, error] : kCases) {
     const std::string said = error_of(attributes);
     EXPECT_THAT(said, HasSubstr(error));
-    EXPECT_THAT(said, HasSubstr("give a finite one"));
+    EXPECT_THAT(said, HasSubstr("use a finite one"));
   }
 }
 

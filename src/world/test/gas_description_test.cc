@@ -143,11 +143,11 @@ TEST_F(Gas, RefusesWhatCannotBe) {
   const std::string gas = "[[gas]]\nname = \"g\"\nposition = [0, 0, 1]\nsize = [2, 2, 2]\n";
   EXPECT_THAT(error_of(gas + "[[fire]]\nname = \"f\"\nposition = [5, 0, 1]\n"),
               testing::AllOf(HasSubstr("s.toml:6"), HasSubstr("fire 'f' is at (5, 0, 1)"),
-                             HasSubstr("gas 'g' reaches from (-1, -1, 0) to (1, 1, 2)")));
+                             HasSubstr("gas 'g' extends from (-1, -1, 0) to (1, 1, 2)")));
   EXPECT_THAT(error_of(gas + "voxel = 0.001\n"), HasSubstr("too many"));
   EXPECT_THAT(error_of(gas + "medium = \"smog\"\n"), HasSubstr("there is no medium 'smog'"));
   EXPECT_THAT(error_of(gas + "[[gas]]\nname = \"h\"\nposition = [1, 0, 1]\nsize = [2, 2, 2]\n"),
-              HasSubstr("overlaps that of gas 'g'"));
+              HasSubstr("overlaps the box of gas 'g'"));
   EXPECT_THAT(error_of("[[gas]]\nname = \"g\"\nsize = [2, 2, 2]\n"), HasSubstr("no position"));
   EXPECT_THAT(error_of("[[fire]]\nname = \"f\"\nbody = \"crat\"\n"), HasSubstr("'cart'"));
   EXPECT_THAT(error_of("[[fire]]\nname = \"f\"\npower = -1\n"), HasSubstr("'power' is -1"));
@@ -224,8 +224,8 @@ TEST_F(Rotors, RefusesWhatCannotBe) {
   EXPECT_THAT(refused("actuator = \"lift\"\nsite = \"left\"\n"),
               HasSubstr("both an actuator and a site"));
   EXPECT_THAT(refused("actuator = \"lift\"\nthrust = 2\n"),
-              HasSubstr("a thrust beside its actuator's force"));
-  EXPECT_THAT(refused("site = \"left\"\n"), HasSubstr("a site and no thrust"));
+              HasSubstr("a thrust in addition to its actuator's force"));
+  EXPECT_THAT(refused("site = \"left\"\n"), HasSubstr("a site but no thrust"));
   EXPECT_THAT(refused("site = \"left\"\nthrust = 1e9\n"), HasSubstr("'thrust' is 1000000000"));
   EXPECT_THAT(error_of(gas_ + "[[rotor]]\nname = \"r\"\nactuator = \"lift\"\nradius = 0\n"),
               HasSubstr("'radius' is 0"));
@@ -236,7 +236,7 @@ TEST_F(Rotors, RefusesWhatCannotBe) {
   EXPECT_THAT(error_of(rotor("actuator = \"lift\"\n")), HasSubstr("there is no gas"));
   EXPECT_THAT(error_of("[[gas]]\nname = \"g\"\nposition = [9, 9, 1]\nsize = [2, 2, 2]\n" +
                        rotor("site = \"fan\"\nthrust = 1\n")),
-              HasSubstr("in no gas"));
+              HasSubstr("outside of any gas"));
 }
 
 TEST_F(Gas, OfDustIsMadeWhereGroundIsDusty) {

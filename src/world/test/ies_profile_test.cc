@@ -181,8 +181,8 @@ TEST(IesProfile, WrongFilesSayWhereAndWhy) {
   EXPECT_THAT(message("\x89PNG\r\n"), HasSubstr("photometric file"));
   EXPECT_THAT(changed("NONE", "lamp.tlt"), AllOf(HasSubstr("lamp.ies:3"), HasSubstr("'lamp.tlt'")));
   EXPECT_THAT(changed("0 45 90", "0 x5 90"),
-              AllOf(HasSubstr("lamp.ies:6"), HasSubstr("'x5' where a vertical angle belongs")));
-  EXPECT_THAT(changed("0 45 90", "0 95 90"), HasSubstr("90 does not rise above 95"));
+              AllOf(HasSubstr("lamp.ies:6"), HasSubstr("'x5' instead of a vertical angle")));
+  EXPECT_THAT(changed("0 45 90", "0 95 90"), HasSubstr("90 is not greater than 95"));
   EXPECT_THAT(changed("0 45 90", "0 45 nan"), HasSubstr("'nan'"));
   EXPECT_THAT(changed("0 45 90", "-9 45 90"), HasSubstr("vertical angles of type C from -9"));
   EXPECT_THAT(changed(" 3 1 1 2", " 3 1 4 2"), HasSubstr("photometric type is 4"));

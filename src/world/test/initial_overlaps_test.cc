@@ -51,12 +51,12 @@ TEST_F(InitialOverlaps, OfRobotsAreToldWithDepthAndPlace) {
   EXPECT_THAT(ball_at("[0, 0, 0.195]"), IsEmpty());
   EXPECT_THAT(ball_at("[0, 0, 0.1]"),
               ElementsAre(AllOf(HasSubstr("scene.toml:3"),
-                                HasSubstr("robot 'go' begins 0.1 m deep in 'ground'"),
-                                HasSubstr("move its position"))));
+                                HasSubstr("robot 'go' starts 0.1 m deep in 'ground'"),
+                                HasSubstr("change its position"))));
   EXPECT_THAT(ball_at("[0.75, 0, 0.5]"),
-              ElementsAre(HasSubstr("robot 'go' begins 0.05 m deep in 'wall'")));
+              ElementsAre(HasSubstr("robot 'go' starts 0.05 m deep in 'wall'")));
   EXPECT_THAT(ball_at("[-2, 0, 0.75]"),
-              ElementsAre(HasSubstr("robot 'go' begins 0.05 m deep in 'bin'")));
+              ElementsAre(HasSubstr("robot 'go' starts 0.05 m deep in 'bin'")));
   EXPECT_THAT(ball_at("[0, 0, 0.5]",
                       "[[robot]]\nname = 'b'\nfile = 'ball.xml'\nposition = [0.3, 0, 0.5]\n"),
               ElementsAre(HasSubstr("'b/ball'")));
@@ -65,7 +65,7 @@ TEST_F(InitialOverlaps, OfRobotsAreToldWithDepthAndPlace) {
 TEST_F(InitialOverlaps, OfLooseThingsAreTold) {
   EXPECT_THAT(told("[environment]\nfile = 'room.xml'\n[[prop]]\nname = 'cone'\nkind = "
                    "'traffic_cone'\nposition = [0, 0, -0.1]\nloose = true\n"),
-              ElementsAre(AllOf(HasSubstr("scene.toml:3"), HasSubstr("prop 'cone' begins 0.1 m"))));
+              ElementsAre(AllOf(HasSubstr("scene.toml:3"), HasSubstr("prop 'cone' starts 0.1 m"))));
 }
 
 TEST_F(InitialOverlaps, BelowAllFloorsIsTold) {
@@ -77,7 +77,7 @@ TEST_F(InitialOverlaps, BelowAllFloorsIsTold) {
   };
   EXPECT_THAT(bedroom(0.25), IsEmpty());
   EXPECT_THAT(bedroom(-4),
-              testing::Contains(HasSubstr("robot 'go' begins 4 m below the lowest floor")));
+              testing::Contains(HasSubstr("robot 'go' starts 4 m below the lowest floor")));
 }
 
 TEST_F(InitialOverlaps, OfABareModelAreItsOwnBusiness) {
@@ -92,7 +92,7 @@ TEST_F(InitialOverlaps, OfABareModelAreItsOwnBusiness) {
 TEST_F(InitialOverlaps, SizesThatAKindCannotHaveAreTold) {
   EXPECT_THAT(told("[[prop]]\nname = 'c'\nkind = 'chair'\nsize = [50, 50, 50]\n"),
               ElementsAre(AllOf(HasSubstr("scene.toml:1"), HasSubstr("prop 'c': it is"),
-                                HasSubstr("not 50 m"), HasSubstr("a chair can be"))));
+                                HasSubstr("not 50 m"), HasSubstr("size of a chair"))));
   EXPECT_THAT(told("[[prop]]\nname = 'd'\nkind = 'desk'\nsize = [0.7, 1.6, 0.74]\n"), IsEmpty());
 }
 

@@ -199,7 +199,7 @@ TEST_F(MeshObjectTest, NodesOfAPlaceGiveWayToNamesOfTheScene) {
       compile("[environment]\nfile = 'two.obj'\n[[object]]\nname = 'pillar'\nfile = 'box.obj'\n");
   ASSERT_TRUE(world.ok()) << world.error().to_string();
   EXPECT_GT(mj_name2id(world->compiled()->model.get(), mjOBJ_BODY, "pillar_2"), 0);
-  EXPECT_THAT(notes(*world), Contains(HasSubstr("node 'pillar' is called 'pillar_2'")));
+  EXPECT_THAT(notes(*world), Contains(HasSubstr("node 'pillar' is renamed to 'pillar_2'")));
 }
 
 constexpr const char* kClash = R"([environment]
@@ -239,7 +239,7 @@ TEST_F(MeshObjectTest, NodesOfOneNameAreNumbered) {
   const mjModel& m = *world->compiled()->model;
   EXPECT_GT(mj_name2id(&m, mjOBJ_BODY, "leg"), 0);
   EXPECT_GT(mj_name2id(&m, mjOBJ_BODY, "leg_2"), 0);
-  EXPECT_THAT(notes(*world), Contains(HasSubstr("node 'leg' is called 'leg_2'")));
+  EXPECT_THAT(notes(*world), Contains(HasSubstr("node 'leg' is renamed to 'leg_2'")));
   EXPECT_THAT(error("[environment]\nfile = 'twins.gltf'\nclash = 'refuse'\n"),
               HasSubstr("node 'leg' and another node"));
   const Result<World> second =
@@ -314,7 +314,7 @@ TEST_F(MeshObjectTest, OpenAndTangledMeshesMoveAsTheirHull) {
 TEST_F(MeshObjectTest, AbsurdScalesAreToldOrRefused) {
   const Result<World> huge = compile(std::string(kCrate) + "scale = 1e6\n");
   ASSERT_TRUE(huge.ok()) << huge.error().to_string();
-  EXPECT_THAT(notes(*huge), Contains(HasSubstr("6e+05 m large")));
+  EXPECT_THAT(notes(*huge), Contains(HasSubstr("a size of 6e+05 m")));
   EXPECT_THAT(
       error(std::string(kCrate) + "scale = 1e-6\n"),
       AllOf(HasSubstr("scene.toml:1"), HasSubstr("too light to move"), HasSubstr("'unit'")));
@@ -344,7 +344,7 @@ TEST_F(MeshObjectTest, NamesThatClashAreErrorsThatNameBoth) {
 TEST_F(MeshObjectTest, OddSizesAreTold) {
   const Result<World> world = compile(std::string(kCrate) + "unit = 1000\n");
   ASSERT_TRUE(world.ok()) << world.error().to_string();
-  EXPECT_THAT(notes(*world), Contains(HasSubstr("object 'crate' is 600 m large")));
+  EXPECT_THAT(notes(*world), Contains(HasSubstr("object 'crate' has a size of 600 m")));
   EXPECT_THAT(world->notes(), Contains(Field(&Error::hint, HasSubstr("unit = 0.001"))));
 }
 

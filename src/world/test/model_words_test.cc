@@ -39,7 +39,7 @@ TEST_F(ModelWordsTest, OfWhatIsGoneFromMuJoCo) {
 TEST_F(ModelWordsTest, OfPluginsThatAreNotMuJoCos) {
   EXPECT_THAT(
       error_of("m.xml", "<mujoco><extension><plugin plugin='acme.motor'/></extension></mujoco>"),
-      HasSubstr("Gloam loads the plugins that come with MuJoCo"));
+      HasSubstr("Gloam loads only the plugins that come with MuJoCo"));
 }
 
 TEST_F(ModelWordsTest, OfXacro) {
@@ -62,7 +62,7 @@ TEST_F(ModelWordsTest, OfXacro) {
 
 TEST_F(ModelWordsTest, OfMeshesGivenAsModels) {
   EXPECT_THAT(error_of("part.obj", tetrahedron_obj()),
-              HasSubstr("is a mesh; a model is wanted here"));
+              HasSubstr("is a mesh, but a model is expected here"));
 }
 
 TEST_F(ModelWordsTest, OfFilesThatAreGitLfsPointers) {
@@ -86,8 +86,8 @@ TEST_F(ModelWordsTest, OfPicturesThatMuJoCoDoesNotRead) {
   for (const char* name : {"skin.jpg", "skin.png"}) {
     folder_.write(name, jpeg);
     const std::string error = error_of("m.xml", model(name));
-    EXPECT_THAT(error, HasSubstr("m.xml:2: the picture '" + std::string(name) + "'"));
-    EXPECT_THAT(error, HasSubstr("a JPEG, which MuJoCo does not read"));
+    EXPECT_THAT(error, HasSubstr("m.xml:2: the image '" + std::string(name) + "'"));
+    EXPECT_THAT(error, HasSubstr("is a JPEG; MuJoCo supports only PNG and KTX"));
     EXPECT_THAT(error, HasSubstr("convert it"));
   }
 }

@@ -112,16 +112,16 @@ TEST_F(NotDrawnTest, DroppedOptionsAndFlagsOfRobotsAreAllNamed) {
   const mjModel& m = *world.compiled()->model;
   std::string all;
   for (const Error& error : world.unsupported()) all += error.to_string() + "\n";
-  EXPECT_THAT(all, HasSubstr("b.xml:1: robot 'b' gives integrator RK4"));
+  EXPECT_THAT(all, HasSubstr("b.xml:1: robot 'b' has integrator RK4"));
   EXPECT_EQ(m.opt.disableflags & mjDSBL_CONTACT, 0);
   EXPECT_THAT(all,
-              HasSubstr("flags.xml:4: robot 'b' gives flag contact disable, the level has enable"));
+              HasSubstr("flags.xml:4: robot 'b' has flag contact disable, but the scene has enable"));
   EXPECT_EQ(m.opt.enableflags & mjENBL_ENERGY, 0);
   EXPECT_THAT(all,
-              HasSubstr("flags.xml:4: robot 'b' gives flag energy enable, the level has disable"));
+              HasSubstr("flags.xml:4: robot 'b' has flag energy enable, but the scene has disable"));
   EXPECT_NE(m.opt.density, 2);
-  EXPECT_THAT(all, HasSubstr("a.xml:1: robot 'a' gives density 2"));
-  EXPECT_THAT(all, HasSubstr("b.xml:3: robot 'b' gives visual/headlight"));
+  EXPECT_THAT(all, HasSubstr("a.xml:1: robot 'a' has density 2"));
+  EXPECT_THAT(all, HasSubstr("b.xml:3: robot 'b' has visual/headlight"));
 }
 
 const std::string kUrdf =
@@ -152,7 +152,7 @@ TEST_F(NotDrawnTest, WhatHasAJointAtItsRootDoesNotFloatTwice) {
       folder_.write("s.toml", "[[robot]]\nname = 'r'\nfile = 'm.xml'\nbase = 'free'\n");
   const Result<World> world = World::compile(*load_scene(file));
   ASSERT_FALSE(world.ok());
-  EXPECT_THAT(world.error().to_string(), HasSubstr("its root has a joint already"));
+  EXPECT_THAT(world.error().to_string(), HasSubstr("its root already has a joint"));
 }
 
 TEST_F(NotDrawnTest, ExportsHaveVisualsAsGeomsThatTouchNothing) {
@@ -169,7 +169,7 @@ TEST_F(NotDrawnTest, ExportsHaveVisualsAsGeomsThatTouchNothing) {
   std::string said;
   for (const Error& error : left_out) said += error.to_string() + "\n";
   EXPECT_THAT(said, HasSubstr("s.toml:8"));
-  EXPECT_THAT(said, HasSubstr("1 [[light]] is not in the export"));
+  EXPECT_THAT(said, HasSubstr("1 [[light]] is not exported"));
   const Result<ModelPtr> loaded = load_stock_model(folder_.path() / "out" / "scene.xml");
   ASSERT_TRUE(loaded.ok()) << loaded.error().to_string();
   const mjModel &was = *world.compiled()->model, &m = **loaded;

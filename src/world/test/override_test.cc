@@ -120,7 +120,7 @@ TEST_F(Override, ASectionsKindsTakeWhatTheyHave) {
   const mjModel* m = model("[override.a.actuator.\".*_hip\"]\nkp = 21\n");  // a motor has no kp
   EXPECT_EQ(m->actuator_gainprm[mjNGAIN * mj_name2id(m, mjOBJ_ACTUATOR, "a/FR_hip")], 21);
   EXPECT_EQ(complaint("[override.a.actuator.FL_hip]\nkp = 21\n"),
-            "scene.toml:5:1: no actuator of 'a' that fits 'FL_hip' has an attribute 'kp'");
+            "scene.toml:5:1: no actuator of 'a' that matches 'FL_hip' has an attribute 'kp'");
 }
 
 TEST_F(Override, OtherValuesAreAnotherWorldToTheCache) {
@@ -151,14 +151,14 @@ TEST_F(Override, MistakesNameTheirLineAndWhatWasMeant) {
             "scene.toml:5:1: 'joint' has no attribute 'dampign' (did you mean 'damping'?)");
   EXPECT_EQ(
       complaint("[override.a.joint.FR_hip]\nlimited = 'perhaps'\n"),
-      "scene.toml:5:1: limited=\"perhaps\" is not a keyword of it; it takes one of false, true, "
+      "scene.toml:5:1: limited=\"perhaps\" is not a valid keyword; expected one of false, true, "
       "auto");
   EXPECT_EQ(complaint("[override.a.joint.FR_hpi]\ndamping = 1\n"),
-            "scene.toml:5:1: no joint of 'a' fits 'FR_hpi' (did you mean 'FR_hip'?)");
+            "scene.toml:5:1: no joint of 'a' matches 'FR_hpi' (did you mean 'FR_hip'?)");
   EXPECT_EQ(complaint("[override.a.joint.\"(\"]\ndamping = 1\n"),
-            "scene.toml:5:1: '(' is no regular expression: missing ): (");
+            "scene.toml:5:1: '(' is not a valid regular expression: missing ): (");
   EXPECT_EQ(complaint("[override.a.joint]\ndamping = 1\n"),
-            "scene.toml:5:1: an override is a table (write [override.a.joint.\"NAME\"])");
+            "scene.toml:5:1: an override must be a table (write [override.a.joint.\"NAME\"])");
   EXPECT_EQ(
       complaint("[override.a.option.fast]\ntimestep = 1\n"),
       "scene.toml:4:20: no element 'option/fast' can be overridden (did you mean 'option/flag'?)");

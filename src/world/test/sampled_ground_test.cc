@@ -277,7 +277,7 @@ TEST_F(SampledGrounds, ComplainOfWhatCannotBeSampled) {
   EXPECT_THAT(
       with("low = [20, 20]\nhigh = [30, 30]\n"),
       HasSubstr("scene.toml:1:1: hfield 'ground': no sample of the region has a surface under "
-                "it (the mesh reaches over x -5 … 5 m, y -5 … 5 m"));
+                "it (the mesh extends over x -5 … 5 m, y -5 … 5 m"));
   EXPECT_THAT(with("low = [2, 2]\nhigh = [1, 4]\n"),
               HasSubstr("hfield 'ground': the region is empty: x from 2 to 1 m"));
   EXPECT_THAT(with("high = [-7, -7]\n"), HasSubstr("the region is empty"));
@@ -290,7 +290,7 @@ TEST_F(SampledGrounds, ComplainOfWhatCannotBeSampled) {
               HasSubstr("visual 'ground' have the same name"));
   folder_.write("e.xml", "<mujoco><worldbody><geom name='ground' size='1'/></worldbody></mujoco>");
   EXPECT_THAT(with("[environment]\nfile = \"e.xml\"\n"),
-              HasSubstr("the environment has a geom 'ground' already"));
+              HasSubstr("the environment already has a geom 'ground'"));
 
   folder_.write("g.obj", bumps_obj(5, 10, 0.001));  // forgot the unit
   EXPECT_THAT(with(""), HasSubstr("unit = 0.001"));
@@ -298,17 +298,17 @@ TEST_F(SampledGrounds, ComplainOfWhatCannotBeSampled) {
   ASSERT_EQ(large.info().notes.size(), 1u);
   EXPECT_THAT(
       large.info().notes[0].to_string(),
-      HasSubstr("the mesh is 10000 m wide (if the file is in millimetres, give unit = 0.001)"));
+      HasSubstr("the mesh is 10000 m wide (if the file is in millimetres, set unit = 0.001)"));
 
   folder_.write("g.obj", bumps_obj(1, 10));  // of a region that is much larger
   const World& missed = make(std::string(kGround) + "low = [-10, -10]\nhigh = [10, 10]\n");
   ASSERT_EQ(missed.notes().size(), 1u);
   EXPECT_THAT(missed.notes()[0].to_string(),
-              AllOf(HasSubstr("of 40401 samples met nothing"), HasSubstr("reaches over x -1 … 1")));
+              AllOf(HasSubstr("of 40401 samples missed the mesh"), HasSubstr("extends over x -1 … 1")));
   EXPECT_EQ(make(std::string(kGround) + "low = [-1, -1]\nhigh = [1, 1.5]\n").notes().size(), 0u);
 
   folder_.write("g.obj", "v 1.05 0 0\nv 1.05 3 0\nv 1.05 3 2\nv 3 1.05 0\nf 1 2 3\n");
-  EXPECT_THAT(with("low = [0, 0]\nhigh = [3.3, 3.3]\n"), HasSubstr("vertical walls are no ground"));
+  EXPECT_THAT(with("low = [0, 0]\nhigh = [3.3, 3.3]\n"), HasSubstr("vertical walls are not ground"));
   folder_.write("g.obj", "v 1 0 0\nv 1 3 0\nv 1 3 nan\nf 1 2 3\n");
   EXPECT_THAT(with(""), HasSubstr("hfield 'ground'"));
   folder_.write("g.obj", "v 1 0 0\nv 1 3 0\nv 1 3 1\n");

@@ -86,21 +86,21 @@ TEST_F(TomlModel, ErrorsNameTheLineOfTheToml) {
   EXPECT_EQ(complaint(write("m.toml", text + "[[mujoco.include]]\nfile = 'gone.toml'\n")),
             "m.toml:20: 'gone.toml' does not exist (check the path)");
   EXPECT_EQ(complaint(write("m.toml", text + "[[mujoco.sensor.touch]]\n")),
-            "m.toml:20:1: <touch> lacks 'site': text");
+            "m.toml:20:1: <touch> is missing 'site': text");
   EXPECT_EQ(
       complaint(write("m.toml", text + "[[mujoco.worldbody.replicate]]\ncount = 999999999\n")),
-      "m.toml:20: replicate count=\"999999999\" is more than the limit of 100000");
+      "m.toml:20: replicate count=\"999999999\" exceeds the limit of 100000");
   write("inner.toml", "[mujoco]\n\n[[mujoco.worldbody.gem]]\n");
   EXPECT_EQ(complaint(write("m.toml", text + "[[mujoco.include]]\nfile = 'inner.toml'\n")),
-            "inner.toml:3:1: <gem> may not stand in <body> (did you mean <geom>?)");
+            "inner.toml:3:1: <gem> is not allowed in <body> (did you mean <geom>?)");
 }
 
 TEST_F(TomlModel, AScenesFileIsNoModel) {
   write("other.toml", "[[robot]]\nname = 'a'\nfile = 'x.xml'\n");
   EXPECT_EQ(
       complaint(write("scene.toml", "[[robot]]\nname = 'a'\nfile = 'other.toml'\n")),
-      "scene.toml:1:1: 'other.toml' is a scene; a model is wanted here (give an MJCF (.xml) or "
-      "URDF file, or a model in TOML (docs/models.md))");
+      "scene.toml:1:1: 'other.toml' is a scene, but a model is expected here (use an MJCF "
+      "(.xml) or URDF file, or a TOML model (docs/models.md))");
   write("broken.toml", "[mujoco]\nmodel = \n");
   EXPECT_THAT(complaint(write("scene.toml", "[[robot]]\nname = 'a'\nfile = 'broken.toml'\n")),
               ::testing::StartsWith("broken.toml:2:"));

@@ -98,7 +98,7 @@ TEST_F(UrdfModels, PicturesOfMaterialsAreListed) {
   const std::vector<Error> unsupported = world.info().unsupported;
   ASSERT_EQ(unsupported.size(), 1u);
   EXPECT_THAT(unsupported[0].to_string(),
-              HasSubstr("drone.urdf:10: the picture 'meshes/checks.png' of material 'checks' is "
+              HasSubstr("drone.urdf:10: the image 'meshes/checks.png' of material 'checks' is "
                         "not drawn"));
 }
 
@@ -130,17 +130,17 @@ INSTANTIATE_TEST_SUITE_P(
     Own, UrdfFaults,
     ::testing::Values(
         Fault{"TwoLinksOfOneName", "<link name='a'/>\n<link name='a'/>",
-              "r.urdf:3: the link 'a' is there twice, first in line 2"},
+              "r.urdf:3: the link 'a' is defined twice, first on line 2"},
         Fault{"TwoParents",
               "<link name='a'/><link name='b'>" INERTIAL "</link><link name='c'>" INERTIAL
               "</link>\n<joint name='j' type='fixed'><parent link='a'/><child link='c'/></joint>\n"
               "<joint name='k' type='fixed'><parent link='b'/><child link='c'/></joint>",
-              "r.urdf:4: the link 'c' hangs from two joints, 'j' and 'k'"},
+              "r.urdf:4: the link 'c' is the child of two joints, 'j' and 'k'"},
         Fault{"Loop",
               "<link name='a'>" INERTIAL "</link><link name='b'>" INERTIAL "</link>\n"
               "<joint name='j' type='revolute'><parent link='a'/><child link='b'/></joint>\n"
               "<joint name='k' type='revolute'><parent link='b'/><child link='a'/></joint>",
-              "r.urdf:3: every link hangs from a joint: the joints make a loop"},
+              "r.urdf:3: every link is the child of a joint: the joints form a loop"},
         Fault{"NoSuchLink",
               "<link name='a'/>\n<joint name='j' type='fixed'><parent link='a'/>"
               "<child link='b'/></joint>",

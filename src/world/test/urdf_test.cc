@@ -98,7 +98,7 @@ TEST_F(UrdfTest, PackagesCanBeNamed) {
   const fs::path file =
       folder_.write("r.urdf", robot_urdf("package://other/part.obj", "package://other/part.obj"));
   EXPECT_THAT(error_of(file),
-              HasSubstr("r.urdf:2: the folder of package 'other' is not known (give "
+              HasSubstr("r.urdf:2: the folder of package 'other' is not known (specify "
                         "it with --package other=FOLDER)"));
   FileAccess access;
   access.packages = {{"other", elsewhere.parent_path()}};

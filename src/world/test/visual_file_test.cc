@@ -398,7 +398,7 @@ TEST_F(VisualFile, ObjBringsItsLibraryAndHeights) {
   EXPECT_NEAR(m.bump_scale, 0.08f, 1e-6f) << "2 x 1 % of the 4 m that the texture spans";
   EXPECT_EQ(material_named(d, "lamp/tilted").textures.bump, -1);
   EXPECT_GE(material_named(d, "lamp/tilted").textures.normal, 0);
-  EXPECT_THAT(notes(d), HasSubstr("looks like normals"));
+  EXPECT_THAT(notes(d), HasSubstr("looks like a normal map"));
 }
 
 TEST_F(VisualFile, MaterialTablesReachItsMaterials) {
@@ -481,7 +481,7 @@ TEST_F(VisualFile, PicturesThatCannotBeReadAreSaid) {
   file.json["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"] = {{"index", texture}};
   const RenderDescription d = described(visual(folder.write("a.glb", file.glb())));
   EXPECT_EQ(material_named(d, "lamp/paint").textures.base_color, -1);
-  EXPECT_THAT(notes(d), HasSubstr("a picture is left out"));
+  EXPECT_THAT(notes(d), HasSubstr("an image is ignored"));
 }
 
 TEST_F(VisualFile, ASecondStartReadsTheCache) {

@@ -106,7 +106,7 @@ TEST_F(Water, RefusesWhatWaterCannotDo) {
               HasSubstr("two waters named 'a'"));
   EXPECT_THAT(
       error_of("[[water]]\nname = \"a\"\n[[water]]\nname = \"b\"\nposition = [3, 0, 0.5]\n"),
-      AllOf(HasSubstr("'b'"), HasSubstr("overlaps that of water 'a'"), HasSubstr(":4:")));
+      AllOf(HasSubstr("'b'"), HasSubstr("overlaps the box of water 'a'"), HasSubstr(":4:")));
   EXPECT_EQ(error_of("[[water]]\nname = \"a\"\n[[water]]\nname = \"b\"\nposition = [4, 0, 0]\n"),
             "");
   EXPECT_EQ(error_of("[[water]]\nname = \"a\"\n[[water]]\nname = \"b\"\nposition = [0, 0, 1]\n"),

@@ -269,7 +269,7 @@ TEST_F(Weather, RefusesWhatThereIsNot) {
   EXPECT_THAT(error_of("[weather]\nvisibility = 10\nmedium = \"fogg\"\n"),
               ::testing::AllOf(HasSubstr("s.toml:"), HasSubstr("fogg"), HasSubstr("fog")));
   EXPECT_THAT(error_of("[weather]\nvisibility = 10\nwhere = \"rooms\"\n"),
-              ::testing::AllOf(HasSubstr("s.toml:"), HasSubstr("no generated building")));
+              ::testing::AllOf(HasSubstr("s.toml:"), HasSubstr("needs a generated building")));
   EXPECT_THAT(error_of("[adversity]\nlevel = \"huge\"\n"), HasSubstr("minor"));
 }
 

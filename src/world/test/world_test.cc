@@ -369,12 +369,12 @@ TEST_F(LevelTest, ErrorsNameTheSceneAndWhatExists) {
   EXPECT_THAT(error_of("t.toml",
                        "[[robot]]\nname = \"a\"\nfile = \"arm.xml\"\n[[camera]]\n"
                        "name = \"a/eye\"\nbody = \"a/base\"\n"),
-              HasSubstr("has a camera named 'a/eye' already"));
+              HasSubstr("already has a camera named 'a/eye'"));
   folder_.write("key.xml",
                 "<mujoco>\n<worldbody><geom size='.1'/></worldbody>\n<keyframe>\n"
                 "<key name='home' ctrl='1 2'/></keyframe></mujoco>");
   EXPECT_THAT(error_of("s.toml", "[[robot]]\nname = \"a\"\nfile = \"key.xml\"\n"),
-              HasSubstr("key.xml:4: robot 'a' cannot join the scene: Keyframe 'home' has"));
+              HasSubstr("key.xml:4: robot 'a' cannot be added to the scene: Keyframe 'home' has"));
 }
 
 TEST_F(WorldTest, ACameraOfTheModelCanBeNamed) {
