@@ -62,7 +62,7 @@ struct NotDrawn {
 
 /// Progress of a job.
 struct Progress {
-  std::string what;    ///< "simulating", "rendering", "making 'chair' physical" …
+  std::string what;    ///< "simulating", "rendering", "building colliders for 'chair'" …
   double done = 0;     ///< 0..1, never decreases
   double seconds = 0;  ///< wall time so far [s]
   double left = 0;     ///< estimate for `what` [s]; 0 = extrapolate `done`, < 0 = unknown

@@ -153,7 +153,7 @@ TEST(Expression, RefusalsTellWhere) {
       {"p[-1].x", 1, 3, "whole number"},
       {"p[1.5].x", 1, 3, "whole number"},
       {"p[1e300].x", 1, 3, "whole number"},
-      {"(p).w", 1, 5, "unexpected '.w'"},
+      {"(p).w", 1, 5, "unexpected 'w'"},
       {"wrong + 1", 1, 1, "no 'wrong'"},
       {"t \xc3\xa4", 1, 3, "unexpected character"},
       {"t \xff", 1, 3, "unexpected character"},

@@ -224,8 +224,9 @@ TEST(MjcfDocument, ErrorsNameLineAndWhatWasMeant) {
                 .error()
                 .to_string(),
             "m.toml:3:8: <geom> has no attribute 'szie' (did you mean 'size'?)");
-  EXPECT_EQ(Document::from_toml("[robot]\n[mujoco]\n", "m.toml").error().to_string(),
-            "m.toml:1:1: 'robot' is outside of [mujoco] (a TOML model has only the table [mujoco])");
+  EXPECT_EQ(
+      Document::from_toml("[robot]\n[mujoco]\n", "m.toml").error().to_string(),
+      "m.toml:1:1: 'robot' is outside of [mujoco] (a TOML model has only the table [mujoco])");
   Document lacking = Document::make("m");
   Mujoco(lacking.root()).sensor().add_touch().set_name("t");
   EXPECT_EQ(lacking.check().error().to_string(), "<touch> 't' is missing 'site': text");

@@ -231,8 +231,7 @@ TEST(Randomize, SaysWhatIsWrong) {
   expect(entry("light.lamp_1.color", "choice = [[1, 1, 1]]\nweights = [1, 2]"), "one weight");
   expect(entry("sky.time", "uniform = [1, 2]"), "not a time of day");
   expect(entry("sky.latitude", "operation = 'add'\nuniform = ['a', 2]"), "neither a number");
-  expect(entry("sky.turbidity", "operation = 'scale'\nuniform = [1, 2]"),
-         "has no value to change");
+  expect(entry("sky.turbidity", "operation = 'scale'\nuniform = [1, 2]"), "has no value to change");
   expect(entry("override.a.joint.hip.damping", "operation = 'scale'\nuniform = [1, 2]"),
          "cannot be added to or scaled");
   expect(entry("override.a.joint", "uniform = [1, 2]"), "override");

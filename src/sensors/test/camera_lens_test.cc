@@ -223,7 +223,7 @@ TEST_F(CameraLensTest, MistakesAreToldWithTheirLine) {
   EXPECT_THAT(told(R"({ model = "pinhole", fx = -3 })"), HasSubstr("fx"));
   EXPECT_THAT(told(R"({ model = "pinhole", fx = 100, sensor_size = [0.01, 0.01] })"),
               HasSubstr("sensor_size"));
-  EXPECT_THAT(told(R"({ model = "pinhole", fx = 100, f_number = 2 })"), HasSubstr("together"));
+  EXPECT_THAT(told(R"({ model = "pinhole", fx = 100, f_number = 2 })"), HasSubstr("needs both"));
   EXPECT_THAT(told(R"({ model = "equirectangular", fx = 3, wide = 1 })"), HasSubstr("wide"));
 }
 

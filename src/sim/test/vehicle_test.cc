@@ -281,7 +281,7 @@ TEST(Vehicle, ABodyOfItsNameIsAnError) {
   add_vehicle(&rig, "cart", {0, 0, 0}, {}, "stand").loc = {"scene.toml", 7, 1};
   const Result<World> world = World::compile(rig.scene);
   ASSERT_FALSE(world.ok());
-  EXPECT_NE(world.error().message.find("a body 'v' already"), std::string::npos);
+  EXPECT_NE(world.error().message.find("already has a body 'v'"), std::string::npos);
   EXPECT_EQ(world.error().loc.line, 7);
 }
 

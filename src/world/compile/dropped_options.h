@@ -20,7 +20,7 @@ struct ModelSettings {
 
 /// One setting that is lost.
 struct DroppedSetting {
-  std::string text;       ///< "integrator implicitfast, the level has Euler"
+  std::string text;       ///< "integrator implicitfast, but the scene has Euler"
   std::string element;    ///< element of MJCF: "option", "flag", "headlight" …
   std::string attribute;  ///< "" = any of the element's
 };

@@ -50,7 +50,7 @@ TEST_F(GeneratedEnvironment, RefusesWhatItCannotMake) {
             std::string::npos);
   EXPECT_NE(complaint("[environment.warehouse]\nwidth = 10\naisle = 6\nlength = 12\n[[prop]]\nname "
                       "= \"steel_frame_1\"\nkind = \"chair\"\n")
-                .find("has a body 'steel_frame_1' already"),
+                .find("already has a body 'steel_frame_1'"),
             std::string::npos);
 }
 

@@ -114,11 +114,11 @@ TEST_F(NotDrawnTest, DroppedOptionsAndFlagsOfRobotsAreAllNamed) {
   for (const Error& error : world.unsupported()) all += error.to_string() + "\n";
   EXPECT_THAT(all, HasSubstr("b.xml:1: robot 'b' has integrator RK4"));
   EXPECT_EQ(m.opt.disableflags & mjDSBL_CONTACT, 0);
-  EXPECT_THAT(all,
-              HasSubstr("flags.xml:4: robot 'b' has flag contact disable, but the scene has enable"));
+  EXPECT_THAT(
+      all, HasSubstr("flags.xml:4: robot 'b' has flag contact disable, but the scene has enable"));
   EXPECT_EQ(m.opt.enableflags & mjENBL_ENERGY, 0);
-  EXPECT_THAT(all,
-              HasSubstr("flags.xml:4: robot 'b' has flag energy enable, but the scene has disable"));
+  EXPECT_THAT(
+      all, HasSubstr("flags.xml:4: robot 'b' has flag energy enable, but the scene has disable"));
   EXPECT_NE(m.opt.density, 2);
   EXPECT_THAT(all, HasSubstr("a.xml:1: robot 'a' has density 2"));
   EXPECT_THAT(all, HasSubstr("b.xml:3: robot 'b' has visual/headlight"));

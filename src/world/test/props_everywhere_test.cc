@@ -185,11 +185,11 @@ TEST_F(PropsEverywhere, RefuseABodyOrJointWhoseNameIsTaken) {
   const Result<World> joint =
       compile(place + "[[prop]]\nname = 'ball'\nkind = 'toy_ball'\nloose = true\n");
   ASSERT_FALSE(joint.ok());
-  EXPECT_NE(joint.error().message.find("has a joint 'ball' already"), std::string::npos)
+  EXPECT_NE(joint.error().message.find("already has a joint 'ball'"), std::string::npos)
       << joint.error().to_string();
   const Result<World> body = compile(place + "[[prop]]\nname = 'a'\nkind = 'toy_ball'\n");
   ASSERT_FALSE(body.ok());
-  EXPECT_NE(body.error().message.find("has a body 'a' already"), std::string::npos);
+  EXPECT_NE(body.error().message.find("already has a body 'a'"), std::string::npos);
 }
 
 }  // namespace

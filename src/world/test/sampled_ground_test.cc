@@ -303,12 +303,13 @@ TEST_F(SampledGrounds, ComplainOfWhatCannotBeSampled) {
   folder_.write("g.obj", bumps_obj(1, 10));  // of a region that is much larger
   const World& missed = make(std::string(kGround) + "low = [-10, -10]\nhigh = [10, 10]\n");
   ASSERT_EQ(missed.notes().size(), 1u);
-  EXPECT_THAT(missed.notes()[0].to_string(),
-              AllOf(HasSubstr("of 40401 samples missed the mesh"), HasSubstr("extends over x -1 … 1")));
+  EXPECT_THAT(missed.notes()[0].to_string(), AllOf(HasSubstr("of 40401 samples missed the mesh"),
+                                                   HasSubstr("extends over x -1 … 1")));
   EXPECT_EQ(make(std::string(kGround) + "low = [-1, -1]\nhigh = [1, 1.5]\n").notes().size(), 0u);
 
   folder_.write("g.obj", "v 1.05 0 0\nv 1.05 3 0\nv 1.05 3 2\nv 3 1.05 0\nf 1 2 3\n");
-  EXPECT_THAT(with("low = [0, 0]\nhigh = [3.3, 3.3]\n"), HasSubstr("vertical walls are not ground"));
+  EXPECT_THAT(with("low = [0, 0]\nhigh = [3.3, 3.3]\n"),
+              HasSubstr("vertical walls are not ground"));
   folder_.write("g.obj", "v 1 0 0\nv 1 3 0\nv 1 3 nan\nf 1 2 3\n");
   EXPECT_THAT(with(""), HasSubstr("hfield 'ground'"));
   folder_.write("g.obj", "v 1 0 0\nv 1 3 0\nv 1 3 1\n");

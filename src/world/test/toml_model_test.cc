@@ -97,10 +97,9 @@ TEST_F(TomlModel, ErrorsNameTheLineOfTheToml) {
 
 TEST_F(TomlModel, AScenesFileIsNoModel) {
   write("other.toml", "[[robot]]\nname = 'a'\nfile = 'x.xml'\n");
-  EXPECT_EQ(
-      complaint(write("scene.toml", "[[robot]]\nname = 'a'\nfile = 'other.toml'\n")),
-      "scene.toml:1:1: 'other.toml' is a scene, but a model is expected here (use an MJCF "
-      "(.xml) or URDF file, or a TOML model (docs/models.md))");
+  EXPECT_EQ(complaint(write("scene.toml", "[[robot]]\nname = 'a'\nfile = 'other.toml'\n")),
+            "scene.toml:1:1: 'other.toml' is a scene, but a model is expected here (use an MJCF "
+            "(.xml) or URDF file, or a TOML model (docs/models.md))");
   write("broken.toml", "[mujoco]\nmodel = \n");
   EXPECT_THAT(complaint(write("scene.toml", "[[robot]]\nname = 'a'\nfile = 'broken.toml'\n")),
               ::testing::StartsWith("broken.toml:2:"));
