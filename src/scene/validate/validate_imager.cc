@@ -20,7 +20,7 @@ Status validate_imager(const std::string& camera, const ImagerOptions& imager) {
           camera,
           fmt::format("'black_level' is {}, which is not below half of the {} pixel values",
                       pixel.black_level, 1 << pixel.bits),
-          pixel.loc, "a typical black level is a sixteenth of the pixel values");
+          pixel.loc, "a typical black level is one sixteenth of the range");
     }
   }
   if (imager.auto_exposure && imager.auto_exposure->min_ev100 > imager.auto_exposure->max_ev100)
