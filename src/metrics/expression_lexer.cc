@@ -18,7 +18,7 @@ bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z')
 constexpr std::string_view kTwoCharacters[] = {"<=", ">=", "==", "!="};
 constexpr std::string_view kOneCharacter = "+-*/^<>?:(),.[]";
 
-// Signs of other languages, and what is written for them here.
+// Operators of other languages, and their equivalents here.
 struct ForeignSign {
   std::string_view sign, instead;
 };

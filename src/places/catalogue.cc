@@ -122,7 +122,7 @@ Status check_request(const PropRequest& request) {
 Result<Prop> make_prop(const PropRequest& request, const Style& style, MaterialSet* materials) {
   GLOAM_TRY_STATUS(check_request(request));
   const PropKind* kind = find_prop_kind(request.kind);
-  MaterialSet tried;  // a maker may choose between some; what it leaves is not the place's
+  MaterialSet tried;  // a maker may choose among materials; the rest is not the place's
   Workshop shop(request, style, &tried);
   Prop prop = kind->make(shop);
   prop.label = kind->name;

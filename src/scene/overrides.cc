@@ -154,7 +154,7 @@ std::vector<const MjcfElement*> overridden_elements(std::string_view tag) {
                    : element.name == tag)
       elements.push_back(&element);
   }
-  // <skin> stands in <asset> and in <deformable>, and is one kind of object.
+  // <skin> is allowed in <asset> and in <deformable>, and is one kind of object.
   const auto same = [&](const MjcfElement* e) {
     return !is_section && !seen.insert(object_of(*e)).second;
   };

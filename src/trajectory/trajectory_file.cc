@@ -23,7 +23,7 @@ constexpr long double kMostSeconds = 4e9L;     // differences of nanoseconds fit
 
 enum class LineFormat { kUnknown, kTum, kKitti, kEuroc };
 
-// A number at the start of `text`, which is cut off with what divides it from the next.
+// A number at the start of `text`, which is removed together with the separator after it.
 template <class Number>
 bool take_number(std::string_view* text, Number* value) {
   while (!text->empty() && (text->front() == ' ' || text->front() == '\t')) text->remove_prefix(1);

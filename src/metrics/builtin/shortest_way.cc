@@ -32,7 +32,7 @@ double ShortestWays::length(const Vec3& from, const Vec3& to) const {
   return std::max(straight, way + beside);
 }
 
-// Detour tells a few corners at a time: from the last of them the way is searched again.
+// Detour returns a few corners at a time: the path is searched again from the last of them.
 double ShortestWays::length_on_mesh(const NavMesh& mesh, const NavPoint& from,
                                     const NavPoint& to) const {
   constexpr int kCorners = 8, kMostSearches = 256;

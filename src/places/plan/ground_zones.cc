@@ -19,7 +19,7 @@ Corner between(const Corner& a, const Corner& b, float t) {
 }
 using Polygon = std::vector<std::pair<Corner, std::vector<float>>>;  // with the zones' fields
 
-// Parts the polygon by the sign of one field: what is above zero, and the rest.
+// Splits the polygon by the sign of one field: the part above zero, and the rest.
 std::pair<Polygon, Polygon> part(const Polygon& polygon, size_t field) {
   std::pair<Polygon, Polygon> parts;
   for (size_t i = 0; i < polygon.size(); ++i) {
@@ -74,7 +74,7 @@ struct Zone {
   std::function<double(double x, double y, Vec3f n)> field;  ///< above 0 where it is
 };
 
-// From the first that claims a place; the last has what is left.
+// Each point belongs to the first zone that claims it; the last zone gets the rest.
 std::vector<Zone> zones_of(const Landscape& land, Workshop* shop) {
   const auto ragged = [&land](double x, double y) { return land.ragged(x, y); };
   std::vector<Zone> zones;

@@ -210,7 +210,7 @@ class PlaceWriter {
     joint->ref = from.initial * unit;
     joint->damping[0] = from.damping;
     joint->frictionloss = from.friction;
-    // Dry friction holds what its limit can hold: as soft as MuJoCo has it, a lid would creep down.
+    // Dry friction must hold loads up to its limit: with MuJoCo's softness, a lid would creep down.
     joint->solimp_friction[0] = 0.999;
     joint->solimp_friction[1] = 0.9999;
     if (from.slides) {

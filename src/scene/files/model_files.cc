@@ -36,7 +36,7 @@ bool leads_to_xml(const FileReference& reference) {
   return reference.element == "include" || reference.element == "model";
 }
 
-// Score of how well an attribute's value explains that `path` was opened: shared trailing
+// Score for how well an attribute's value explains the opening of `path`: shared trailing
 // components.
 size_t shared_tail(const fs::path& path, const fs::path& value) {
   std::vector<fs::path> a(path.begin(), path.end()), b(value.begin(), value.end());
@@ -152,8 +152,8 @@ Result<ModelFiles::Content> ModelFiles::open(const fs::path& path, std::string* 
   total_size_ += bytes->size();
   if (total_size_ > kLargestTotal)
     return fail(ErrorKind::kInput, "brings the total size of the model's files above 8 GiB");
-  // XML that MuJoCo finds by a way the scan did not follow is scanned now, before its parser sees
-  // it.
+  // XML that MuJoCo finds by a path that the scan did not follow is scanned now, before its parser
+  // sees it.
   const std::string extension = lower_extension(path);
   if (extension == ".xml" || extension == ".urdf" || extension == ".toml" || extension == ".obj") {
     Result<std::optional<std::string>> plain = plain_text(*bytes, path.string());
@@ -199,7 +199,7 @@ Status ModelFiles::scan(const fs::path& file, const fs::path& model, const Sourc
   std::string hash;
   Result<Content> content = open(file, &hash, true);
   if (!content.ok()) {
-    if (content.error().loc.line > 0) return content.error();  // it says itself where
+    if (content.error().loc.line > 0) return content.error();  // it has its own location
     const bool is_named = !named_at.file.empty();  // else it comes from the command line
     Error error = content.error();
     error.message =
@@ -384,8 +384,8 @@ SourceLoc ModelFiles::find_reference(const fs::path& path) const {
   return written_at(best);
 }
 
-// MuJoCo does not say which of the included files it means, and elements that were included have
-// lost their line.
+// MuJoCo does not report which included file it refers to, and included elements have lost their
+// line.
 void ModelFiles::find_place(const std::string& element, Error* error, const fs::path& model) const {
   std::vector<const std::pair<const fs::path, XmlScan>*> files;
   if (const auto main = scans_.find(model); main != scans_.end()) files.push_back(&*main);
@@ -409,7 +409,7 @@ void ModelFiles::find_place(const std::string& element, Error* error, const fs::
   }
 }
 
-// MuJoCo says "unsupported content type" or that no PNG can be read, and names the texture alone.
+// MuJoCo reports "unsupported content type" or an unreadable PNG, and names only the texture.
 void ModelFiles::explain_picture(Error* error) const {
   const auto scan = scans_.find(error->loc.file);
   if (scan == scans_.end()) return;

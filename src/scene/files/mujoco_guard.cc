@@ -35,9 +35,9 @@ void copy_message(const char* text) {
   }
 }
 
-// MuJoCo's compiler is C++ with a runtime library of its own, whose unwinder reads frames of ours
-// wrongly. Its exceptions therefore end before they come here, in its std::terminate() and so in
-// abort(), and the process with them: what its threads and locks are in by then nobody knows.
+// MuJoCo's compiler is C++ with its own runtime library, whose unwinder misreads our frames. Its
+// exceptions therefore never reach us: they end in its std::terminate(), in abort(), and with the
+// process, because the state of its threads and locks is then unknown.
 struct sigaction previous_abort = {};
 
 void on_abort(int signal) {
@@ -73,11 +73,11 @@ void take_message(const mjLogMessage* message) {
   }
 }
 
-// A warning that there is no memory to tell of is lost: no exception may cross MuJoCo.
+// A warning for which there is no memory is lost: no exception may cross MuJoCo.
 void handle_message(const mjLogMessage* message) {
   try {
     take_message(message);
-  } catch (const std::exception&) {  // counted it is
+  } catch (const std::exception&) {  // it has been counted
   }
 }
 

@@ -9,8 +9,8 @@ struct Hint {
   std::string_view hint;
 };
 
-// Hints from MuJoCo's changelog for elements, attributes and plugins that are gone, and for demands
-// of its compiler that do not say how. The first that fits counts.
+// Hints from MuJoCo's changelog for removed elements, attributes and plugins, and remedies for
+// requirements of its compiler. The first match applies.
 constexpr Hint kHints[] = {
     {"unrecognized element", "composite",
      "MuJoCo 4 no longer has <composite>: use <flexcomp dim=\"1\"> with <elasticity> for a cable, "

@@ -25,7 +25,8 @@ namespace {
 // MuJoCo's own format, which only its compiler reads.
 bool is_msh(const fs::path& path) { return lower_extension(path) == ".msh"; }
 
-// STL as text begins with "solid", and is not as long as its byte 80 says of a binary one.
+// A text STL begins with "solid", and its length differs from the length that byte 80 of a binary
+// STL gives.
 bool is_stl_text(const fs::path& path) {
   std::ifstream in(path, std::ios::binary);
   std::array<char, 84> head{};
@@ -90,7 +91,7 @@ class Preparer {
   }
 
  private:
-  // Checks for faults that MuJoCo refuses without a name or a line.
+  // Checks for faults that MuJoCo rejects without a name or a line.
   Status check_tree(const pugi::xml_node& robot) const {
     std::map<std::string, pugi::xml_node> links, joint_above;  // nodes by the link's name
     for (const pugi::xml_node& link : robot.children("link")) {

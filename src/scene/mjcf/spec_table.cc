@@ -111,7 +111,7 @@ T* pointer_at(const SpecObject& object, const SpecField& field) {
   return *reinterpret_cast<T**>(bytes_at(object, field));
 }
 
-// Copies what `from` has elsewhere than `others`; true if there is anything.
+// Copies the values in which `from` differs from all `others`; true if there are any.
 bool copy_changed(const SpecObject& from, const std::vector<SpecObject>& others,
                   const SpecField& field, const SpecObject& to) {
   if (field.type == SpecType::kStruct || field.type == SpecType::kHandle) return false;
@@ -182,7 +182,7 @@ AttributeEffect find_effect(const MjcfElement& element, const MjcfAttribute& att
          spec_difference(readings.specs[0].get(), readings.specs[i].get()))
       fields.insert(difference.field);
   }
-  fields.erase("mjsCompiler.authored");  // says only that something was given
+  fields.erase("mjsCompiler.authored");  // only records that something was given
   return {readings.taken > 0,
           {fields.begin(), fields.end()},
           readings.complaint.ok() ? "" : readings.complaint.error().message};
@@ -192,7 +192,7 @@ struct AttributeValue::Learned {
   const MjcfElement* element;
   const MjcfAttribute* attribute;
   std::string value;
-  std::vector<OwnedSpec> specs;  // they own what `objects` points at
+  std::vector<OwnedSpec> specs;  // owners of the elements in `objects`
   std::vector<AttributeExample> objects;
 };
 

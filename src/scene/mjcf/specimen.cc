@@ -127,7 +127,7 @@ std::vector<std::string> values_to_try(const MjcfAttribute& attribute) {
     for (const std::string_view word : split_words(attribute.keywords)) values.emplace_back(word);
     return values;
   }
-  // Names of what is there, and what only some texts are: layers' roles, sizes, heights.
+  // Names of existing elements, and texts with a restricted form: layers' roles, sizes, heights.
   if (attribute.type == MjcfType::kString)
     return {"b2",   "j",      "s2",  "cl",     "me", "mo",      "fr", "main",
             "geom", "sphere", "rgb", "normal", "1M", "0 1 2 3", "xyz"};

@@ -28,8 +28,8 @@ class DrawChecks {
   DrawChecks(const RandomizeOptions& options, Status* status)
       : o_(options), checks_only_(true), status_(status) {}
 
-  /// From OptionWalker, where nothing has the name: true if what such a thing could be given shall
-  /// be checked all the same.
+  /// From OptionWalker, if nothing has the name: true if the values shall be checked against a
+  /// default example.
   bool begin_example(bool is_pattern);
   void end_example() { --examples_; }
 

@@ -136,8 +136,7 @@ size_t choose(const RandomizeOptions& o, Dice* dice) {
 
 Status validate_randomize(const Scene& scene) {
   for (const RandomizeOptions& o : scene.randomize) GLOAM_TRY_STATUS(check_form(o));
-  // Whatever comes of them, none may fail for one seed alone. What generators make is not there
-  // yet.
+  // No draw may fail for some seeds only. Generated elements do not exist yet.
   Scene any = scene;
   for (const RandomizeOptions& o : scene.randomize) {
     const std::vector<std::string> names = split_option_path(o.option);

@@ -37,7 +37,7 @@ class OverrideReader {
     const bool once = !elements.empty() && is_once(*elements[0]);
     OverrideOptions override{.robot = robot, .tag = tag};
     override.loc = loc;
-    if (elements.empty()) return check_override(override);  // says which there are
+    if (elements.empty()) return check_override(override);  // suggests the nearest one
     for (const auto& [key, below] : *table) {
       const std::string name(key.str());
       override.loc = loc_of(key, file_);

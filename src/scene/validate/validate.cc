@@ -58,7 +58,7 @@ class FieldChecker {
   void check(std::string_view key, const Vec3& v, const FieldRule& rule) {
     for (const double x : {v.x, v.y, v.z}) {
       number(key, x, rule);
-      // A mesh's size: what is below zero mirrors it.
+      // A mesh's size: negative factors mirror it.
       if (status_->ok() && rule.one_for_three && !(std::abs(x) >= 1e-6))
         fail(key, "has a number that is zero or nearly zero");
     }
@@ -132,7 +132,7 @@ Status refuse_duplicates(const std::vector<Options>& options, std::string_view k
   return {};
 }
 
-// An object's name is a body's and what segmentation calls it.
+// An object's name is used for its body and in segmentation.
 Status validate_object_names(const Scene& scene) {
   for (const ObjectOptions& object : scene.objects) {
     const auto clash = [&](const auto& others, std::string_view kind) -> Status {

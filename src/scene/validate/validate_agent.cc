@@ -34,7 +34,7 @@ Status check_behavior(const AgentOptions& agent) {
 }  // namespace
 
 Status validate_agents(const Scene& scene) {
-  std::map<std::string, std::string> taken;  // name -> of what
+  std::map<std::string, std::string> taken;  // name -> kind
   for (const RobotOptions& o : scene.robots) taken.emplace(o.name, "robot");
   for (const PropOptions& o : scene.props) taken.emplace(o.name, "prop");
   for (const ObjectOptions& o : scene.objects) taken.emplace(o.name, "object");

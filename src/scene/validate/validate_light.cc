@@ -41,7 +41,7 @@ Keys given_keys(const Options& options) {
   return std::move(given.keys);
 }
 
-/// One kind of a thing: what it may have beside what all have, and what it must have.
+/// One kind of an element: its optional keys, besides the keys of all kinds, and its required keys.
 struct Kind {
   std::string_view name;
   Keys may, must;

@@ -7,7 +7,7 @@
 namespace gloam {
 namespace {
 
-/// Keys of a kind of place, and what to write.
+/// Keys of a kind of place, and the remedy for wrong ones.
 struct PlaceRule {
   ProbePlace place;
   bool position, body, agent, camera, normal;  ///< keys that it may have

@@ -73,7 +73,7 @@ void describe_place(const Place& place, CompiledWorld* world) {
   world->ev100 = place.ev100;
 }
 
-// A kind of the catalogue has limits of its own, to which what is asked for gives way.
+// Notes requested sizes that exceed the limits of their kind of prop.
 void note_sizes(const Scene& scene, const Place& place, std::vector<Error>* notes) {
   constexpr double kNear = 0.05, kShare = 0.1;  // [m], of the edge
   for (const PropOptions& prop : scene.props) {

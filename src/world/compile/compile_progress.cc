@@ -18,7 +18,7 @@ double expected_share(double passed, double expected) {
   return 1 - (1 - kAsExpected) * std::exp((kAsExpected - x) / (1 - kAsExpected));
 }
 
-constexpr double kTelling = 0.02;  // share that must be done to tell how long the rest takes
+constexpr double kTelling = 0.02;  // fraction after which the remaining time is estimated
 
 double passed_since(std::chrono::steady_clock::time_point start) {
   return Seconds(std::chrono::steady_clock::now() - start).count();
@@ -69,7 +69,7 @@ Progress CompileProgress::state(bool is_all) const {
     const double by_clock = expected_share(passed, expected_);
     if (by_clock > share) {
       share = by_clock;
-      out.left = passed < expected_ ? expected_ - passed : -1;  // a late stage: nobody knows
+      out.left = passed < expected_ ? expected_ - passed : -1;  // late stage: unknown
     }
   }
   out.done = std::min((before_ + weight_ * share) / weights_, 1.0);

@@ -25,8 +25,8 @@ struct DroppedSetting {
   std::string attribute;  ///< "" = any of the element's
 };
 
-/// Settings that the file `own` gives and the level does not have. What `own` has by default is not
-/// given, unless its name is one of `given`.
+/// Settings that the file `own` gives and the level does not have. Defaults of `own` do not count
+/// as given, unless their name is in `given`.
 std::vector<DroppedSetting> dropped_settings(const ModelSettings& own, const ModelSettings& level,
                                              const std::set<std::string>& given);
 

@@ -77,7 +77,7 @@ class Overlaps {
     const auto moves = [&](int geom) { return m_.body_weldid[m_.geom_bodyid[geom]] != 0; };
     int robots[2] = {robot_of(m_.geom_bodyid[geoms[0]]), robot_of(m_.geom_bodyid[geoms[1]])};
     if (robots[0] >= 0 && robots[0] == robots[1]) return;
-    // The first is the one to be moved: a robot, else what moves.
+    // The first is the one to be moved: a robot, otherwise the moving body.
     if ((robots[0] < 0 && robots[1] >= 0) || (robots[0] < 0 && robots[1] < 0 && !moves(geoms[0]))) {
       std::swap(geoms[0], geoms[1]);
       std::swap(robots[0], robots[1]);

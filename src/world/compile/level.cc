@@ -61,7 +61,8 @@ void report_warnings(const MujocoWarningCapture& warnings, const mjSpec* spec, i
   }
 }
 
-// Tells that MuJoCo is at work, to the log if nobody watches otherwise. It cannot be stopped.
+// Reports that MuJoCo is working, in the log if there is no progress callback. MuJoCo cannot be
+// interrupted.
 class ModelWatch {
  public:
   ModelWatch(std::string what, double weight, double expected, CompileProgress* progress) {
@@ -126,9 +127,9 @@ void add_default_floor(mjSpec* spec) {
   edit(mjs_setString, floor->material, "floor");
 }
 
-// Settings that MuJoCo says an attached model lost, one a line, as "timestep: parent has 0.002,
-// child has 0.001, keeping parent value": also those that the file gives and that are MuJoCo's
-// default.
+// Settings that an attached model lost according to MuJoCo, one per line, as "timestep: parent has
+// 0.002, child has 0.001, keeping parent value": also those that the file gives and that are
+// MuJoCo's default.
 std::set<std::string> settings_told(mjSpec* spec, int first) {
   std::set<std::string> names;
   for (int i = first; i < mjs_numWarnings(spec); ++i) {
@@ -405,7 +406,7 @@ Result<Level> build_level(const Scene& scene, const std::optional<Place>& place,
             sample_grounds(scene, files, &notes, progress));
   GLOAM_TRY(const std::vector<Converted> converted, convert_objects(objects, progress));
   // MuJoCo's "merge" rules let a robot bring its solver settings along; where two files cannot both
-  // be right ("merge" refuses), the earlier file wins and the rest is reported.
+  // be right ("merge" fails), the earlier file wins and the rest is reported.
   const auto assembled_by = [&](mjtConflict policy) {
     return assemble(scene, place, objects, converted, files, grounds, policy, progress);
   };

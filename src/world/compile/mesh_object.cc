@@ -16,7 +16,7 @@
 namespace gloam {
 namespace {
 
-// Sizes that are worth a question [m]: of what moves, of what stands, of a place.
+// Suspicious sizes [m]: of dynamic objects, of static objects, of a place.
 constexpr double kTiny = 1e-3, kHuge = 10, kHugeFixed = 100, kHugePlace = 10'000;
 
 bool is_place(const EnvironmentOptions& e) { return is_model_file(e.file); }
@@ -176,7 +176,7 @@ class ObjectLoader {
       key(o.colliders), key(o.concavity), key(o.max_hulls);
       key(o.friction.has_value()), key(o.friction.value_or(Vec3{}));
       key(object.is_place);
-      key(o.loc.line);  // stands in cached messages
+      key(o.loc.line);  // part of cached messages
       hash = hash_bytes(key.bytes.data(), key.bytes.size(), hash);
       hash = hash_span(std::span<const Vec3f>(object.mesh.positions), hash);
       hash = hash_span(std::span<const uint32_t>(object.mesh.indices), hash);

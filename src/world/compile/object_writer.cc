@@ -123,7 +123,7 @@ double expected_seconds(const MeshObject& object) {
   return (kLeast + kPerTriangle * triangles) * std::pow(kUsual / object.options.concavity, kPower);
 }
 
-// Tells the log of the conversion, if nobody watches it otherwise.
+// Logs the conversion if there is no progress callback.
 class ConvertWatch {
  public:
   ConvertWatch(const MeshObjects& objects, CompileProgress* progress) {

@@ -44,7 +44,7 @@ std::vector<PlacedMesh> place_meshes(const HeightFieldOptions& o, const ModelFil
   return meshes;
 }
 
-/// The meshes' bounds over the ground, and what of them is to be sampled.
+/// The meshes' horizontal bounds, and the part of them to be sampled.
 struct SampledRegion {
   std::array<double, 2> mesh_low{}, mesh_high{}, low{}, high{};
 

@@ -28,7 +28,7 @@ Error rotor_error(const RotorOptions& rotor, const std::string& message, std::st
           std::move(hint)};
 }
 
-/// Id of what is called `name`.
+/// Id of the element called `name`.
 Result<int> find_object(const RotorOptions& rotor, const mjModel& m, mjtObj type, mjtSize count,
                         const char* kind, const std::string& name) {
   const int id = mj_name2id(&m, type, name.c_str());

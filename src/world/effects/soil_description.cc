@@ -28,8 +28,8 @@ constexpr double kLeastDepth = 0.01;  // least depth of it there, over its depth
 // of 32 %. Lunar soil: Heiken et al. 1991, "Lunar Sourcebook", chapter 9.
 // Shear displacement: Wong, section 2.4.3: 1 cm firm sand, 2.5 cm loose, 0.6 cm clay, 2.5 cm snow.
 // The rise at the sides is our estimate: wet clay and mud keep their volume, snow is compacted.
-// Unloading: A_u of LETE sand for what is mineral, of Petawawa's snow A: Wong, table 2.4.
-// Walls of prints stand in what is wet or compacted, and on the moon (photographs of bootprints).
+// Unloading: A_u of LETE sand for mineral soils, of Petawawa's snow A: Wong, table 2.4.
+// Walls of prints hold in wet or compacted soil, and on the moon (photographs of bootprints).
 constexpr double kSandUnloading = 503e6, kSnowUnloading = 109.6e6;  // [N/m⁴]
 struct KindRow {
   double n, k_c, k_phi, cohesion, friction, shear, a_u, aside;

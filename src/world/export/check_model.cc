@@ -28,8 +28,8 @@ std::string one_line(const std::string& text) {
   return line.ends_with("; ") ? line.substr(0, line.size() - 2) : line;
 }
 
-// "" or why stock MuJoCo does not load the file. In a process of its own: what Gloam refuses is
-// what may bring MuJoCo down or never ends.
+// "", or the reason why stock MuJoCo does not load the file. Uses a separate process: a file that
+// Gloam rejects may crash MuJoCo or never finish loading.
 std::string stock_refusal(const fs::path& file, unsigned longest) {
   int ends[2];
   if (::pipe(ends) != 0) return "its process could not be started";
@@ -121,7 +121,7 @@ ModelCheck check_model(const fs::path& file, const FileAccess& access, const fs:
   check.unlike_export = exported->differing;
   check.export_reason = exported->why;
   check.export_bytes = bytes_below(folder);
-  if (exported->compared == 0)  // MuJoCo does not load what it wrote
+  if (exported->compared == 0)  // MuJoCo does not load its own output
     check.status = Error{ErrorKind::kUnsupported, exported->why};
   return check;
 }

@@ -256,8 +256,8 @@ bool is_same_physics(const mjModel& a, const mjModel& b) {
          same(a.qpos0, b.qpos0, a.nq);
 }
 
-// Adds what is only drawn to the exact export in `path`. Where stock MuJoCo does not take it, or
-// would move differently, the file stays as it is.
+// Adds visuals to the exact export in `path`. If stock MuJoCo does not accept them, or would move
+// differently, the file remains unchanged.
 Status add_visuals(const CompiledWorld& world, const fs::path& path, mjSpec* spec,
                    AssetWriter* assets, std::vector<Error>* left_out) {
   const std::vector<Error> words = list_left_out(world.scene);
@@ -300,7 +300,7 @@ Result<ModelPtr> load_stock_model(const fs::path& file) {
 
 Result<ExportedModel> write_mjcf(const CompiledWorld& world, const fs::path& folder,
                                  std::vector<Error>* left_out) {
-  // The spec is made anew: a World keeps what simulation needs, and a cached one never had it.
+  // The spec is built again: a World keeps only the model, and a cached World never had a spec.
   ModelFiles files;
   GLOAM_TRY_STATUS(add_scene_files(world.scene, &files));
   GLOAM_TRY(const std::optional<Place> place, make_place(world.scene));
@@ -317,8 +317,8 @@ Result<ExportedModel> write_mjcf(const CompiledWorld& world, const fs::path& fol
   AssetWriter assets(&files, folder);
   GLOAM_TRY_STATUS(assets.write_all(spec, level.model.get()));
   const fs::path path = folder / "scene.xml";
-  // As written keeps every number exact. Where MJCF cannot say a level as written (robots with
-  // different compiler settings), the compiled values can.
+  // Values as written keep every number exact. If MJCF cannot represent a level as written (robots
+  // with different compiler settings), compiled values can.
   ExportedModel last;
   std::string why;
   for (const bool compiled_values : {false, true}) {

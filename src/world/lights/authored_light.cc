@@ -81,7 +81,7 @@ float area_illuminance(double luminance, double area, bool is_flat, float distan
 struct LampPlace {
   int body = 0, schedule = -1, motion = -1;  ///< the latter two: rows, -1 = none
   bool is_static = true;
-  float distance = 1;  ///< to what it is meant for [m]
+  float distance = 1;  ///< to its target [m]
 };
 
 class LightAuthor {
@@ -110,11 +110,11 @@ class LightAuthor {
   LabelTable* labels_;
   LightLevels* levels_;
   RenderDescription* out_;
-  std::map<std::filesystem::path, int> profiles_, meshes_;  ///< rows of what was read already
+  std::map<std::filesystem::path, int> profiles_, meshes_;  ///< rows of files already read
   int count_ = 0;
 };
 
-/// Errors of files carry their own place or none; the scene's line says which lamp it was.
+/// Errors of files have their own location or none; the scene's line identifies the lamp.
 Error in_light(Error error, const LightOptions& light) {
   error.message = fmt::format("light '{}': {}", light.name, error.to_string());
   error.loc = light.loc;
@@ -209,7 +209,7 @@ Status LightAuthor::add_area(const LightOptions& options, const LampPlace& place
     GLOAM_TRY(instance.mesh, mesh_row(options));
     area = area_of(out_->meshes[static_cast<size_t>(instance.mesh)]);
   }
-  // It reflects nothing: its luminance is what was asked for.
+  // It reflects nothing: its luminance is the specified value.
   MaterialDescription material;
   material.name = options.name;
   material.base_color = {0, 0, 0};

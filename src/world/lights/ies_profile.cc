@@ -13,7 +13,7 @@
 namespace gloam {
 namespace {
 
-constexpr double kSlack = 1e-3;  // [degrees], in comparisons of what files round
+constexpr double kSlack = 1e-3;  // tolerance for rounded angles [degrees]
 
 bool near(double a, double b) { return std::abs(a - b) < kSlack; }
 
@@ -44,8 +44,8 @@ double measured(const IesMeasurement& m, double vertical, double horizontal) {
   return share_h > 0 ? at(h) + share_h * (at(h + 1) - at(h)) : at(h);
 }
 
-/// Makes the horizontal angles of type C whole: 0 to 360, or one. What the standard allows to be
-/// left out is a mirror image.
+/// Completes the horizontal angles of type C: 0 to 360, or one. Angles that the standard allows to
+/// omit are mirror images.
 Status complete_c(IesMeasurement* m, const std::string& name) {
   const SourceLoc vertical{name, m->vertical_line, 0}, horizontal{name, m->horizontal_line, 0};
   if (m->vertical.front() < -kSlack || m->vertical.back() > 180 + kSlack) {

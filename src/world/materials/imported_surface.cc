@@ -165,7 +165,7 @@ class SurfaceMaker {
     m().coat_weight = in_.coat_weight;
     m().coat_roughness = in_.coat_roughness;
     m().coat_ior = kCoatIor;
-    m().coat_darkening = 0;  // glTF's coat dims the base by what it reflects alone
+    m().coat_darkening = 0;  // glTF's coat dims the base by its reflection only
     if (in_.coat_weight > 0) {
       m().textures.coat_weight = row_of(in_.coat_weight_texture, "coat weight");
       m().textures.coat_roughness = row_of(in_.coat_roughness_texture, "coat roughness");

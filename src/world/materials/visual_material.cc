@@ -41,7 +41,7 @@ std::string decode_faces(const Texels& texels, ColorSpace color_space, std::vect
   return "";
 }
 
-/// Cuts the texels into one image or six; returns what is wrong, or "".
+/// Cuts the texels into one image or six; returns the problem, or "".
 std::string cut_faces(const Texels& texels, int channels, bool cube, ColorSpace color_space,
                       std::vector<Image8>* faces) {
   const auto* bytes = texels.data;
@@ -103,8 +103,8 @@ int MaterialTable::layer(int matid, mjtTextureRole role, MaterialDescription* ma
   material->mapping = mapping;
   const bool is_color =
       role == mjTEXROLE_RGB || role == mjTEXROLE_RGBA || role == mjTEXROLE_EMISSIVE;
-  // tex_colorspace cannot tell an author's "linear" from a file that says nothing, as most do, and
-  // those hold display colours. So the role decides.
+  // tex_colorspace cannot distinguish an author's "linear" from a file without a colour space, like
+  // most, which contain display colours. So the role decides.
   return texture_row(texid, is_color ? ColorSpace::kSrgb : ColorSpace::kLinear);
 }
 

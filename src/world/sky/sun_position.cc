@@ -62,7 +62,7 @@ double days_since_2000(const CivilTime& t) {
   return day - kDay2000 + (hours - 12) / 24;
 }
 
-/// Lift by the air at 1010 hPa and 10 °C [rad] of what truly is at `elevation` [rad].
+/// Lift by the air at 1010 hPa and 10 °C [rad] of an object at the true `elevation` [rad].
 double refraction(double elevation) {
   const double h = elevation / kDegree;
   const double minutes = h > -0.575 ? 1.02 / std::tan((h + 10.3 / (h + 5.11)) * kDegree)

@@ -200,7 +200,7 @@ Prop shelf_rack(Workshop& shop) {
   return p;
 }
 
-// Boltless shelves with what lies on them.
+// Boltless shelves with their contents.
 Prop stocked_shelf(Workshop& shop) {
   Prop p = shelf_rack(shop);
   PropPart& b = p.body();
