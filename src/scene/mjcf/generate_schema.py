@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
-"""Makes mjcf_schema_table.inc, every element and attribute of MJCF as the MuJoCo at hand has them, and a C++ class for each.
+"""Writes mjcf_schema_table.inc, with every element and attribute of MJCF in this MuJoCo, and a C++ class for each.
 
   generate_schema.py --library libmujoco.so --spec mujoco/mjspec.h --doc MUJOCO/doc --table mjcf_schema_table.inc --header mjcf_elements.h
 
-The grammar (elements, attributes, how often each may stand) is the library's own, printed by mj_printSchema, and so
-are types and lengths: every attribute is given words and numbers, and the parser says what it takes. Keywords,
-defaults and texts are read out of the manual's XMLreference.rst, units out of XMLunits.rst. Without the manual (a
-MuJoCo of the system's) the table lacks these. What mjSpec has and MJCF has not is added, out of mjspec.h.
+The grammar (elements, attributes and how often each is allowed) is the library's own, printed by mj_printSchema. Types
+and lengths come from its parser, which is given words and numbers for every attribute. Keywords, defaults and texts are
+read from the manual's XMLreference.rst, units from XMLunits.rst. Without the manual (a MuJoCo of the system) the table
+lacks these. Attributes that only mjSpec has are added from mjspec.h.
 """
 
 import argparse
@@ -145,7 +145,7 @@ def plain(text):
 
 
 def labels_of(path, attribute):
-    """Where the manual may tell of it: it leaves out elements that stand above others only."""
+    """Places where the manual may describe it: it omits elements that only contain others."""
     parts = path.split("/")[1:]
     for first in range(len(parts)):
         yield "-".join(parts[first:] + [attribute])
@@ -192,7 +192,7 @@ def same_as(path):
 
 
 def describe(path, attribute, reference):
-    """What the manual says of it: of its own, or of the same attribute of another element."""
+    """Its description in the manual, or that of the same attribute of another element."""
     about = {"type": None, "default": None, "doc": "", "body": ""}
     for where in [path, *filter(None, same_as(path))]:
         for label in labels_of(where, attribute):
@@ -204,7 +204,7 @@ def describe(path, attribute, reference):
 
 
 def keywords(about):
-    """Words that may be its keywords; the parser tells which are."""
+    """Words that may be its keywords; the parser decides which ones are."""
     kind = about["type"] or ""
     if kind.startswith("["):
         return [word.strip() for word in kind.strip("[]").split(",")]

@@ -1,4 +1,4 @@
-"""What MuJoCo's own parser takes in each attribute: asked by giving it documents of one element."""
+"""Values that MuJoCo's own parser accepts for each attribute, found by parsing documents with one element."""
 
 import ctypes
 import json
@@ -42,7 +42,7 @@ class Parser:
         self.mujoco.mj_deleteSpec.argtypes = [ctypes.c_void_p]
 
     def complaint(self, text):
-        """None, or why MuJoCo refuses to read it."""
+        """None, or the reason why MuJoCo rejects it."""
         error = ctypes.create_string_buffer(2000)
         spec = self.mujoco.mj_parseXMLString(text.encode(), None, error, len(error))
         if spec:
@@ -57,7 +57,7 @@ def tag(name, attributes):
 
 
 def document(path, attributes, needed):
-    """MJCF with one element of this path; what stands above it has what it needs."""
+    """MJCF with one element of this path; the elements above it have all that they need."""
     parts = path.split("/")
     if len(parts) == 1:
         return tag("mujoco", attributes)[1] + "/>"
@@ -73,7 +73,7 @@ def document(path, attributes, needed):
 
 
 def required_attributes(parser, path, needed):
-    """What the parser says an element lacks, filled in until it reads it."""
+    """Adds the attributes that the parser reports as missing until it accepts the element."""
     attributes = dict(NEEDED.get(path, {}))
     required = list(FATAL_WITHOUT.get(path, []))
     for _ in range(12):
@@ -158,6 +158,6 @@ def ask_all(library, grammar, words_of, needed, found, folder):
                     "attributes": {name: take(parser, path, name, base, needed, words_of(path, name)) for name in names}}
         answer = in_a_child(work, folder)
         if answer is None:
-            raise SystemExit(f"MuJoCo ended the process that asked it about <{path}>: it needs an entry in parser_probe.NEEDED")
+            raise SystemExit(f"MuJoCo terminated the process that probed <{path}>: add an entry to parser_probe.NEEDED")
         needed[path] = answer["base"]
         found[path] = answer

@@ -49,7 +49,7 @@ def class_names(paths):
         if name in names.values():
             name = "".join(map(camel, parts))
         if name in names.values():
-            raise SystemExit(f"two elements would be the class {name}; one is {path}")
+            raise SystemExit(f"two elements would have the class {name}; one is {path}")
         names[path] = name
     return names
 
@@ -148,7 +148,7 @@ def properties(attribute, owner, enums):
 
 
 def children_of(path, elements):
-    """[(tag, path, may repeat)] of what may stand below."""
+    """[(tag, path, may repeat)] of the elements allowed below."""
     holder = BODY if path in GROUPS else path
     below = []
     for element in elements:

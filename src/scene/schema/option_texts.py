@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Makes option_texts.inc: what the public headers say of each option, for the JSON Schema of scene files.
+"""Writes option_texts.inc: the description of each option in the public headers, for the JSON Schema of scene files.
 
   option_texts.py --out option_texts.inc HEADER...
 
