@@ -45,14 +45,16 @@ def functions(lines):
 
 
 def documented():
-    """Files whose words users read: README.md, docs/, public headers, the Python package."""
+    """Files whose words users read: README.md, docs/, public headers, the Python package, sources for their messages."""
     listed = subprocess.run(["git", "ls-files", "--cached", "--others", "--exclude-standard", "README.md", "docs/*.md", "include/*.h", "python/gloam/*.py"],
                             cwd=ROOT, capture_output=True, text=True, check=True).stdout.splitlines()
-    return [ROOT / name for name in sorted(listed) if (ROOT / name).exists()]
+    speaking = [str(path.relative_to(ROOT)) for path in sources() if path.suffix == ".cc" and not re.search(r"/(?:test|fuzz)/", str(path))]
+    return [ROOT / name for name in sorted(listed + speaking) if (ROOT / name).exists()]
 
 
 def prose(path):
-    """Numbered lines of a file's prose: documents without code but with its comments, comments of headers, docstrings of Python."""
+    """Numbered lines of a file's prose: documents without code but with its comments, comments of headers, docstrings of Python, and the
+    texts of two words and more in sources, which are messages."""
     lines, kept = path.read_text().splitlines(), []
     if path.suffix == ".py":
         nodes = [node for node in ast.walk(ast.parse(path.read_text())) if isinstance(node, ast.Module | ast.ClassDef | ast.FunctionDef)]
@@ -60,6 +62,11 @@ def prose(path):
         kept = [(number, lines[number - 1]) for string in strings for number in range(string.lineno, string.end_lineno + 1)]
     elif path.suffix == ".h":
         kept = [(number, found.group(1)) for number, line in enumerate(lines, 1) if (found := re.search(r"(?<!:)//+<?(.*)$", line))]
+    elif path.suffix == ".cc":
+        for number, line in enumerate(lines, 1):
+            if not line.lstrip().startswith(("//", "#include")):
+                kept += [(number, text) for text in re.findall(r'"((?:[^"\\]|\\.)*)"', line) if " " in text.strip()]
+        return kept
     else:
         in_code = False
         for number, line in enumerate(lines, 1):
@@ -100,7 +107,7 @@ def main():
         list_phrases("".join(sys.argv[2:3]))
         return
     counts = phrase_counts()
-    print(f"phrases to avoid in README.md, docs/, public headers and Python docstrings: {sum(counts.values())}")
+    print(f"phrases to avoid in README.md, docs/, public headers, Python docstrings and messages: {sum(counts.values())}")
     for name, n in counts.most_common():
         print(f"  {n} {name}")
     folders, long_files, long_functions, comments = Counter(), [], [], Counter()

@@ -1,4 +1,4 @@
-"""Plain English: the number of phrases to avoid (tests/house.py) in README.md, docs/, public headers and docstrings has a limit."""
+"""Plain English: the number of phrases to avoid (tests/house.py) in README.md, docs/, public headers, docstrings and messages has a limit."""
 import re
 import subprocess
 import tempfile
@@ -40,6 +40,10 @@ class Measure(unittest.TestCase):
     def test_of_headers_and_python(self):
         self.assertEqual(self.found(".h", "int what;  ///< lest it falls\n// obeys\n"), [(2, "obeys"), (1, "lest")])
         self.assertEqual(self.found(".py", 'what = 1  # told\ndef f():\n    """Returns\n    what it hears."""\n'), [(4, "what"), (4, "hears")])
+
+    def test_of_messages(self):
+        text = '#include "what is.h"\n// "it tells"\nfail("the file tells nothing", kWhat, "whatever");\n'
+        self.assertEqual(self.found(".cc", text), [(3, "tells")])
 
     def test_plain_sentences_pass(self):
         self.assertEqual(self.found(".md", "Each run is recorded to one log. Those logs replay bit for bit; the server rejects others.\n"), [])

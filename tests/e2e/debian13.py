@@ -129,8 +129,8 @@ class Debian13(unittest.TestCase):
         self.assertRegex(version, r"Embree 4\.")
         pendulum = chroot.folder / "root/m.xml"
         pendulum.write_text(PENDULUM)
-        bridged = self.succeeds(chroot, "cd /root/gloam && ./gloam run /root/m.xml --ros2 --duration 1 --json")
-        self.assertIn('"state_hash"', bridged)
+        bridged = self.succeeds(chroot, "cd /root/gloam && ./gloam run /root/m.xml --ros2 --duration 1")
+        self.assertIn("gloam: ros2: node 'gloam'", bridged)
         printed = self.succeeds(chroot, f"cd /root/gloam && {commands[1]}", 7200)
         self.assertRegex(printed, r"\n[1-9]\d* passed, 0 failed")
 

@@ -142,7 +142,7 @@ TEST(ModelFiles, MissingAndWrongFilesAreNamed) {
   EXPECT_THAT(add_error(folder.write("s.xml",
                                      "<mujoco><asset>\n<mesh file='http://x.y/a.stl'/>"
                                      "</asset></mujoco>")),
-              HasSubstr("s.xml:2: the file 'http://x.y/a.stl' of <mesh> is a network address"));
+              HasSubstr("s.xml:2: the path 'http://x.y/a.stl' of <mesh> is a network address"));
   EXPECT_THAT(add_error(folder.path()), HasSubstr("folder"));
 }
 

@@ -69,7 +69,7 @@ TEST_F(Override, OfAPatternChangesAllThatFitWhole) {
   EXPECT_EQ(damping(m, "a/FR_knee"), 0.5);
   EXPECT_EQ(damping(m, "a/FL_hip"), 2);
   EXPECT_EQ(complaint("[override.a.joint.\"FR\"]\ndamping = 0.5\n"),
-            "scene.toml:5:1: no joint of 'a' fits 'FR' (one of: FR_hip, FR_knee, FL_hip)");
+            "scene.toml:5:1: no joint of 'a' matches 'FR' (one of: FR_hip, FR_knee, FL_hip)");
 }
 
 TEST_F(Override, AnExactNameBeatsAPatternAndALaterLineAnEarlierOne) {
