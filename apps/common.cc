@@ -101,9 +101,11 @@ CLI::Validator non_negative_number() {
 }
 
 void add_access_options(CLI::App& command, FileAccess& access, std::vector<std::string>& packages) {
-  command.add_option("--root", access.root, "No file of the model may lie outside this folder");
-  command.add_flag("--strict", access.strict, "The root is the model file's own folder");
-  command.add_option("--package", packages, "Where package://NAME is, as NAME=FOLDER (repeatable)");
+  command.add_option("--root", access.root,
+                     "Folder that contains all files of the model; files outside it are rejected");
+  command.add_flag("--strict", access.strict, "Use the folder of the model file as --root");
+  command.add_option("--package", packages,
+                     "Folder that package://NAME refers to, as NAME=FOLDER (repeatable)");
 }
 
 Status apply_packages(FileAccess& access, const std::vector<std::string>& packages) {
@@ -124,7 +126,7 @@ void tell_all(const char* heading, const std::vector<Error>& errors) {
   for (size_t i = 0; i < std::min(errors.size(), kMost); ++i)
     tell("gloam: {}: {}\n", heading, errors[i].to_string());
   if (errors.size() > kMost)
-    tell("gloam: {}: {} more, which gloam info lists\n", heading, errors.size() - kMost);
+    tell("gloam: {}: {} more; run gloam info to list them\n", heading, errors.size() - kMost);
 }
 
 }  // namespace

@@ -61,9 +61,9 @@ void watch() {
       end_process({ErrorKind::kInterrupted, "interrupted"});
     if (phase == Phase::kStopping && since > kTimeToStop)
       end_process({ErrorKind::kInterrupted,
-                   "interrupted: the work did not stop in time, its files are unfinished",
+                   "interrupted: the job did not stop in time and its files are incomplete",
                    {},
-                   "gloam recover repairs a log; other files are whole up to their last entry"});
+                   "gloam recover repairs a log; other files are complete up to their last entry"});
     if (since > kTimeToFinish)
       end_process({ErrorKind::kInterrupted, "interrupted: finishing the files took too long"});
   }

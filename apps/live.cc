@@ -46,18 +46,21 @@ void begin(const LiveRun& run, const LiveCommand& command) {
 
 void LiveCommand::add_to(CLI::App& app) {
   app.add_flag("--view", view, "Serve a live page on this machine instead of recording");
-  app.add_flag("--ros2", ros2, "Be a ROS 2 node on this machine: topics, services (docs/ros2.md)");
+  app.add_flag("--ros2", ros2,
+               "Run as a ROS 2 node on this machine, with topics and services (docs/ros2.md)");
   app.add_flag("--zmq", zmq, "Serve states and operations over ZeroMQ (docs/zmq.md)");
-  app.add_flag("--foxglove", foxglove, "Serve Foxglove (docs/foxglove.md)");
-  app.add_flag("--paused", paused, "Live runs: wait until a client starts the simulation");
-  app.add_option("--port", port, "Port of --view, else of --foxglove; 0 = any free one")
+  app.add_flag("--foxglove", foxglove, "Run a Foxglove server (docs/foxglove.md)");
+  app.add_flag("--paused", paused, "Live runs: start paused, until a client starts the simulation");
+  app.add_option("--port", port,
+                 "Port of the live page, or without --view of the Foxglove server; default: 8080 "
+                 "or 8765; 0: any free port")
       ->check(CLI::Range(0, 65535));
-  app.add_option("--speed", speed, "Simulated seconds per second, where it is paced")
+  app.add_option("--speed", speed,
+                 "Simulated seconds per second of real time, unless the pace is fast; default: 1")
       ->check(positive_number());
-  app.add_option(
-         "--pace", pace,
-         "fast: as fast as possible; realtime: by the wall clock, late sensors lose "
-         "messages; sensors: by the wall clock at most, waits for every sensor that is read")
+  app.add_option("--pace", pace,
+                 "fast: as fast as possible; realtime: in real time, slow sensors lose messages; "
+                 "sensors: at most in real time, waits for all subscribed sensors")
       ->check(CLI::IsMember({"fast", "realtime", "sensors"}));
 }
 

@@ -51,9 +51,11 @@ int report_log(const std::string& file, const Globals& globals) {
   say("{:.2f} MiB, {} messages in {} chunks, {:.2f} : 1; {:.3f} s; profile '{}', by '{}'\n",
       static_cast<double>(log->bytes) / (1 << 20), log->messages, log->chunks, log->compression,
       log->duration, log->profile, log->library);
-  if (log->has_run) say("a run of scene '{}': `gloam replay {} --verify`\n", log->scene, file);
-  if (log->messages == 0) say("the log is empty: it has no messages\n");
-  if (!log->damage.empty()) say("damaged: {}: `gloam recover {}`\n", log->damage, file);
+  if (log->has_run)
+    say("run of scene '{}'; to verify it: `gloam replay {} --verify`\n", log->scene, file);
+  if (log->messages == 0) say("the log is empty: it contains no messages\n");
+  if (!log->damage.empty())
+    say("damaged: {}; to repair the log: `gloam recover {}`\n", log->damage, file);
   say("\n  {:<40} {:<36} {:>9} {:>9}\n", "topic", "type", "messages", "rate");
   for (const LoggedTopic& topic : log->topics)
     if (topic.messages > 0)
@@ -81,13 +83,13 @@ int report_topics(const World& world, const Globals& globals) {
     put_json(json);
     return 0;
   }
-  say("  {:<5} {:<36} {:<34} {:<10} {}\n", "", "topic", "type", "rate", "of");
+  say("  {:<6} {:<36} {:<34} {:<10} {}\n", "", "topic", "type", "rate", "source");
   for (const TopicInfo& topic : *topics) {
     const std::string rate = topic.is_input         ? "-"
                              : topic.qos.is_latched ? "latched"
                              : topic.rate.num == 0  ? "every step"
                                                     : fmt::format("{:g} Hz", topic.rate.value());
-    say("  {:<5} {:<36} {:<34} {:<10} {}{}\n", topic.is_input ? "hears" : "says", topic.name,
+    say("  {:<6} {:<36} {:<34} {:<10} {}{}\n", topic.is_input ? "input" : "output", topic.name,
         topic.type, rate, topic.source, topic.is_logged || topic.is_input ? "" : " (not in logs)");
   }
   return 0;

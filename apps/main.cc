@@ -32,23 +32,23 @@ Status check_environment() {
 
 int run_program(int argc, char** argv) {
   CLI::App app{
-      "Gloam: a robotics simulator. Physics is exactly MuJoCo, light is path-traced.\n"
-      "In the source tree also: ./gloam setup | test | bench | mitsuba | gallery | docs | pack | "
-      "python | wheel | doctor"};
+      "Gloam: a robotics simulator with unmodified MuJoCo physics and path-traced sensors.\nThe "
+      "source tree adds: ./gloam setup | test | bench | mitsuba | gallery | docs | pack | python | "
+      "wheel | doctor"};
   app.name("gloam");
   app.require_subcommand(1);
   app.fallthrough();
   app.set_version_flag("--version",
                        [] { return std::string("gloam ") + version() + "\n" + configuration(); });
   app.footer(
-      "Example: gloam run examples/demo.toml --out results/first\nExit codes: 0 ok, 1 failure, 2 "
-      "usage, 3 partial, 130 interrupted");
+      "Example: gloam run examples/demo.toml --out results/first\nExit codes: 0 success, 1 "
+      "failure, 2 usage error, 3 partial result, 130 interrupted");
 
   Globals globals;
   bool verbose = false;
-  app.add_flag("--json", globals.json, "Print data as JSON on stdout");
-  app.add_flag("-q,--quiet", globals.quiet, "No progress, only warnings and errors");
-  app.add_flag("-v,--verbose", verbose, "Print more detail");
+  app.add_flag("--json", globals.json, "Print results as JSON to stdout");
+  app.add_flag("-q,--quiet", globals.quiet, "Print warnings and errors only, no progress");
+  app.add_flag("-v,--verbose", verbose, "Print debug messages");
 
   Action action;
   for (const auto add : kCommands) add(app, globals, action);
@@ -72,7 +72,7 @@ int finish_data() {
   if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return 0;
   pollfd out{STDOUT_FILENO, POLLOUT, 0};
   if (::poll(&out, 1, 0) == 1 && (out.revents & POLLERR) != 0) return 0;
-  return fail({ErrorKind::kIo, "standard output takes no more", {}, "is the disk full?"});
+  return fail({ErrorKind::kIo, "cannot write to standard output", {}, "is the disk full?"});
 }
 
 }  // namespace
@@ -81,7 +81,7 @@ int finish_data() {
 int main(int argc, char** argv) {
 #ifdef __AVX512F__
   if (!__builtin_cpu_supports("avx512f")) {
-    std::cerr << "gloam: error: built for a CPU with AVX-512, which this one has not: build it on "
+    std::cerr << "gloam: error: built for CPUs with AVX-512, which this CPU lacks: build it on "
                  "this machine, or with -DGLOAM_MARCH=x86-64-v3\n";
     return 1;
   }

@@ -35,9 +35,9 @@ Status check_outputs(const std::vector<std::string>& outputs) {
     if (std::ranges::find(known, output) != known.end()) continue;
     std::string hint = suggest_name(output, known);
     return Error{ErrorKind::kUsage,
-                 fmt::format("--output {}: there is no such output", output),
+                 fmt::format("--output {}: unknown output", output),
                  {},
-                 hint.empty() ? "gloam run --help lists them" : hint};
+                 hint.empty() ? "gloam run --help lists all outputs" : hint};
   }
   return {};
 }
@@ -50,9 +50,9 @@ Status check_still_outputs(const std::vector<std::string>& outputs) {
     });
     if (!has_still)
       return Error{ErrorKind::kUsage,
-                   fmt::format("--output {}: a still has none", output),
+                   fmt::format("--output {}: not available for stills", output),
                    {},
-                   "record it: gloam run --output " + output};
+                   "record it with gloam run --output " + output};
   }
   return {};
 }
@@ -61,7 +61,7 @@ void tell_void_outputs(const std::vector<std::string>& outputs, const Scene& sce
                        const World& world) {
   for (const std::string& output : outputs) {
     const std::string why = why_void(output, scene, world);
-    if (!why.empty()) tell("gloam: warning: --output {} names nothing here: {}\n", output, why);
+    if (!why.empty()) tell("gloam: warning: --output {} has no effect: {}\n", output, why);
   }
 }
 

@@ -38,8 +38,8 @@ Status refuse_beside_verify(const CLI::App& app) {
     const std::string name = option->get_name();
     const bool is_taken = name == "LOG" || name == "--verify" || name == "--folder";
     if (option->count() > 0 && !is_taken)
-      return without_effect(name, "with --verify, which steps all runs as they were",
-                            "leave out one of them");
+      return without_effect(name, "with --verify, which replays all runs unchanged",
+                            "use only one of them");
   }
   return {};
 }
@@ -52,24 +52,24 @@ Status refuse_void_flags(const CLI::App& app) {
   if (is_live) {
     GLOAM_TRY_STATUS(refuse(
         app, {"--out", "--log", "--overwrite", "--output", "--variants", "--randomize", "--restep"},
-        "in a live replay", "leave out --view, --ros2, --zmq and --foxglove to record"));
+        "in a live replay", "remove --view, --ros2, --zmq and --foxglove to record the replay"));
   } else {
     GLOAM_TRY_STATUS(refuse(app, {"--loop", "--paused", "--port", "--speed"},
-                            "in a replay that is recorded",
-                            "--view, --ros2, --zmq and --foxglove show it live"));
+                            "in a recorded replay",
+                            "use --view, --ros2, --zmq or --foxglove for a live replay"));
     if (!is_given(app, "--out"))
       GLOAM_TRY_STATUS(refuse(app, {"--camera", "--output", "--variants"}, "without --out",
-                              "--out names the results folder"));
+                              "set the results folder with --out"));
     if (!any_given(app, {"--out", "--log"}))
       GLOAM_TRY_STATUS(refuse(app, {"--overwrite"}, "without --out or --log", ""));
   }
   if (!is_given(app, "--variants"))
     GLOAM_TRY_STATUS(refuse(app, {"--randomize"}, "without --variants",
-                            "--overlay lays a file with [[randomize]] tables over the scene once"));
+                            "to apply a file with [[randomize]] tables once, use --overlay"));
   if (!any_given(app, {"--overlay", "--randomize"}))
-    GLOAM_TRY_STATUS(refuse(app, {"--seed"}, "without --overlay or --randomize",
-                            "it draws the [[randomize]] tables of these files; the run keeps its "
-                            "own seed"));
+    GLOAM_TRY_STATUS(refuse(
+        app, {"--seed"}, "without --overlay or --randomize",
+        "it only seeds the [[randomize]] tables of these files; the run keeps its own seed"));
   return {};
 }
 

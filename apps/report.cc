@@ -13,7 +13,7 @@ namespace gloam::cli {
 std::vector<std::string> sensor_table(const std::vector<SensorCost>& sensors) {
   if (sensors.empty()) return {};
   std::vector<std::string> lines = {fmt::format("  {:<32} {:>10} {:>11} {:>9} {:>8} {:>11} {:>11}",
-                                                "stream", "wanted Hz", "achieved Hz", "messages",
+                                                "stream", "target Hz", "achieved Hz", "messages",
                                                 "dropped", "ms each", "ms waiting")};
   for (const SensorCost& s : sensors) {
     const std::string achieved = s.achieved > 0 ? fmt::format("{:.2f}", s.achieved) : "-";
@@ -69,7 +69,7 @@ int tell_of(const Result<RunReport>& report, const Globals& globals) {
     for (const std::string& line : sensor_table(report->sensors)) say("{}\n", line);
     if (!report->out.empty()) {
       const std::string pictures =
-          report->frames > 0 ? fmt::format(" ({} pictures)", report->frames) : std::string();
+          report->frames > 0 ? fmt::format(" ({} images)", report->frames) : std::string();
       say("results in {}{}:\n", report->out.string(), pictures);
       for (const std::string& file : report->written) say("  {}\n", file);
     }

@@ -20,16 +20,16 @@ Result<std::pair<std::string, std::string>> split_setting(const std::string& set
 }
 
 void SceneOptions::add_to(CLI::App& command) {
-  command.add_option("--seed", seed, "Seed of everything random");
+  command.add_option("--seed", seed, "Seed of all random numbers; default: the scene's");
   command.add_option("--set", settings,
-                     "Change one setting of the scene, as sim.duration=5 (repeatable)");
+                     "Change a setting of the scene, such as sim.duration=5 (repeatable)");
   add_access_options(command, access, packages);
 }
 
 void SceneOptions::add_keyframe_to(CLI::App& command) {
-  command.add_option("--keyframe", keyframe,
-                     "Keyframe of a model to start from, by name or number; scenes name those of "
-                     "their robots");
+  command.add_option(
+      "--keyframe", keyframe,
+      "Initial keyframe of a model, by name or number; in a scene, set it in the [[robot]]");
 }
 
 namespace {
@@ -43,11 +43,12 @@ void refuse_beside_log(const CLI::App& command, const std::vector<const CLI::Opt
   for (const CLI::Option* option : options) {
     const std::string name = option->get_name();
     if (option->count() > 0 && std::ranges::find(kKept, name) == std::end(kKept))
-      throw CLI::ParseError(fmt::format("{} does not go with --at: a log is gone on from as it is; "
-                                        "gloam replay LOG --restep --set … runs a changed scene "
-                                        "under its Commands",
-                                        name),
-                            CLI::ExitCodes::InvalidError);
+      throw CLI::ParseError(
+          fmt::format(
+              "{} cannot be combined with --at, which resumes a log unchanged; to run a changed "
+              "scene with the log's Commands, use gloam replay LOG --restep --set …",
+              name),
+          CLI::ExitCodes::InvalidError);
   }
 }
 
@@ -55,37 +56,43 @@ void refuse_beside_log(const CLI::App& command, const std::vector<const CLI::Opt
 
 void RenderFlags::add_to(CLI::App& command) {
   command
-      .add_option(
-          "--spp", spp,
-          "Samples per pixel; default: the scene's, or 4; with --error at most, default 4096")
+      .add_option("--spp", spp,
+                  "Samples per pixel; default: the scene's, or 4; with --error: the most per "
+                  "pixel, default 4096")
       ->check(CLI::Range(1, 65536));
   command
       .add_option("--error", error,
-                  "Sample each pixel until its standard error is this share of its value, as 0.02; "
-                  "path tier")
+                  "Sample each pixel until its standard error is this fraction of its value, such "
+                  "as 0.02; path tier")
       ->check(CLI::Range(1e-4, 1.0));
-  command.add_option("--max-depth", max_depth, "Longest light path, in vertices")
+  command
+      .add_option("--max-depth", max_depth,
+                  "Maximum length of light paths, in vertices; default: the scene's, or 5, or 24 "
+                  "with media")
       ->check(CLI::Range(1, 64));
   command
       .add_option("--tier", tier,
-                  "path: unbiased light; fast: interactive, filtered; direct: one ambient light")
+                  "Rendering method. path: unbiased light; fast: interactive, filtered; direct: "
+                  "one ambient light")
       ->check(CLI::IsMember({"path", "fast", "direct"}));
-  command.add_option("--device", device, "What renders; auto: an NVIDIA card where there is one")
+  command
+      .add_option("--device", device,
+                  "Rendering device; auto: an NVIDIA GPU if available, otherwise the CPU")
       ->check(CLI::IsMember({"auto", "cpu", "cuda"}));
-  command.add_option("--ev", ev100, "Exposure value at ISO 100; default: by the scene's light");
+  command.add_option("--ev", ev100, "Exposure value at ISO 100; default: set by the scene's light");
   command
       .add_option("--look", look,
-                  "Light of a model that brings none; studio: soft light and a floor; model: as "
-                  "MuJoCo shows it; default: the scene's, else studio where nothing gives light")
+                  "Lighting of models without lights. studio: soft light and a floor; model: as in "
+                  "MuJoCo's viewer; default: the scene's, or studio if nothing emits light")
       ->check(CLI::IsMember({"auto", "studio", "model"}));
   command
       .add_option("--groups", groups,
-                  "Groups of geoms, tendons and sites to draw, as 0,1,2,3; default: 0,1,2")
+                  "Groups of geoms, tendons and sites to render, such as 0,1,2,3; default: 0,1,2")
       ->delimiter(',')
       ->check(CLI::Range(0, 5));
-  command.add_flag("--sites", sites, "Draw sites, too");
-  command.add_flag("--no-denoise", no_denoise, "Show the samples as they are");
-  command.add_option("--threads", threads, "Threads for rendering; 0 = all")
+  command.add_flag("--sites", sites, "Render sites too");
+  command.add_flag("--no-denoise", no_denoise, "Do not denoise the images");
+  command.add_option("--threads", threads, "Number of rendering threads; 0: one per processor")
       ->check(CLI::Range(0, 1024));
 }
 
@@ -128,12 +135,14 @@ void RunOptions::add_to(CLI::App& command) {
   const std::vector<CLI::Option*> others = command.get_options();
   command.add_option("--timestep", timestep, "Physics time step in seconds; default: the model's")
       ->check(positive_number());
-  command.add_option("--camera", cameras, "Camera by name (repeatable); default: all");
-  command.add_option("--resolution", resolution, "WIDTHxHEIGHT of every camera");
+  command.add_option("--camera", cameras,
+                     "Name of a camera to use (repeatable); default: all cameras");
+  command.add_option("--resolution", resolution,
+                     "Image size of every camera in pixels, as WIDTHxHEIGHT");
   RenderFlags::add_to(command);
   command
       .add_option("--output", outputs,
-                  fmt::format("What to record: {}", fmt::join(kOutputNames, " ")))
+                  fmt::format("Outputs to record: {}", fmt::join(kOutputNames, " ")))
       ->delimiter(',');
   add_keyframe_to(command);
   SceneOptions::add_to(command);

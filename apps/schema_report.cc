@@ -72,7 +72,7 @@ std::string in_short(const std::vector<std::string>& attributes) {
 void print_text(const SchemaCoverage& coverage, const Count& attributes, const Count& fields) {
   const auto of_mjcf = static_cast<size_t>(
       std::ranges::count(coverage.attributes, false, &SchemaCoverage::Attribute::is_spec_only));
-  say("attributes: {} of {} mirrored: {} of MJCF's {} elements, {} that only mjSpec has\n",
+  say("attributes: {} of {} mirrored: {} of MJCF's {} elements, {} that exist only in mjSpec\n",
       attributes.mirrored(), attributes.total, of_mjcf, coverage.elements,
       coverage.attributes.size() - of_mjcf);
   say("fields of mjSpec: {} of {} mirrored\n\n", fields.mirrored(), fields.total);
@@ -85,7 +85,7 @@ void print_text(const SchemaCoverage& coverage, const Count& attributes, const C
   for (const Count* count : {&attributes, &fields}) {
     for (const std::string& name : count->missing) say("missing: {}\n", name);
   }
-  say("\n--json has the whole table, both ways\n");
+  say("\nuse --json for the complete table in both directions\n");
 }
 
 }  // namespace
@@ -97,7 +97,7 @@ int report_schema(const Globals& globals) {
   const SchemaCoverage coverage = mjcf::find_schema_coverage([&](double done) {
     const std::lock_guard lock(mutex);
     const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
-    return show({"asking MuJoCo what each attribute sets", done, seconds.count()});
+    return show({"finding the fields that each attribute sets", done, seconds.count()});
   });
   finish_progress();
   if (interrupted()) return fail({ErrorKind::kInterrupted, "interrupted"});

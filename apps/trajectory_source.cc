@@ -12,10 +12,11 @@ Result<std::string> only_pose_topic(const std::string& log) {
   if (topics.size() == 1) return topics[0];
   std::string all;
   for (const std::string& topic : topics) all += (all.empty() ? "" : ", ") + topic;
-  return Error{ErrorKind::kUsage,
-               topics.empty() ? "the log has no topic of poses" : "the log has several: " + all,
-               {},
-               "name one (--topic, or LOG.mcap:/topic); a frame as in /tf:robot/base"};
+  return Error{
+      ErrorKind::kUsage,
+      topics.empty() ? "the log has no pose topics" : "the log has several pose topics: " + all,
+      {},
+      "choose one with --topic or as LOG.mcap:/topic; a frame is written as /tf:robot/base"};
 }
 
 Result<Trajectory> load_trajectory(const std::string& source) {

@@ -11,16 +11,16 @@ namespace {
 
 // Commands of the start script (gloam in the source tree).
 const std::vector<std::pair<std::string, std::string>> kScriptCommands = {
-    {"setup", "Install what is missing and build"},
+    {"setup", "Install missing packages and build the program"},
     {"test", "Run the tests"},
-    {"bench", "Measure against peers and limits"},
-    {"mitsuba", "Judge the path tier by Mitsuba 3"},
-    {"gallery", "Make the pictures of docs/gallery"},
+    {"bench", "Run the benchmarks"},
+    {"mitsuba", "Compare the path tier with Mitsuba 3"},
+    {"gallery", "Render the images of docs/gallery"},
     {"docs", "Build the documentation site in build/site"},
-    {"pack", "Bundle the program for a machine with an NVIDIA card"},
-    {"python", "Start Python with the module gloam"},
-    {"wheel", "Make a Python wheel that carries every library it needs"},
-    {"doctor", "Say what is missing on this machine and how to mend it"}};
+    {"pack", "Bundle the program for a machine with an NVIDIA GPU"},
+    {"python", "Start Python with the gloam module"},
+    {"wheel", "Build a Python wheel that contains all libraries it needs"},
+    {"doctor", "Report missing requirements of this machine and how to fix them"}};
 
 }  // namespace
 
@@ -45,7 +45,7 @@ Error explain(const CLI::App& root, const std::string& word, const CLI::ParseErr
   for (const auto& [name, text] : commands(root)) names.push_back(name);
   if (!word.empty() && std::ranges::find(names, word) == names.end())
     return {ErrorKind::kUsage,
-            fmt::format("there is no command '{}'", word),
+            fmt::format("unknown command '{}'", word),
             {},
             suggest_name(word, names)};
   std::vector<std::string> options = option_names(root);
@@ -57,7 +57,7 @@ Error explain(const CLI::App& root, const std::string& word, const CLI::ParseErr
     if (!name.starts_with('-') || std::ranges::find(options, name) != options.end()) continue;
     std::string hint = suggest_name(name, options);
     if (hint.empty()) hint = "run with --help";
-    return {ErrorKind::kUsage, fmt::format("there is no option '{}'", name), {}, hint};
+    return {ErrorKind::kUsage, fmt::format("unknown option '{}'", name), {}, hint};
   }
   return {ErrorKind::kUsage, error.what(), {}, "run with --help"};
 }

@@ -92,16 +92,17 @@ int clear(const std::string& which, const Globals& globals) {
 }  // namespace
 
 void add_cache(CLI::App& app, Globals& globals, Action& action) {
-  CLI::App* sub = app.add_subcommand(
-      "cache", "List what is kept on disk so that a second start is faster, or clear it");
+  CLI::App* sub =
+      app.add_subcommand("cache", "List or clear the cache on disk that makes later starts faster");
   sub->require_subcommand(0, 1);
   sub->footer(
-      "GLOAM_CACHE is the folder (default: ~/.cache/gloam), GLOAM_CACHE_SIZE the most that it "
-      "holds (default: 10G);\nwhat was used longest ago is dropped first.\n"
-      "Examples:\n  gloam cache\n  gloam cache clear visuals");
-  CLI::App* clearing = sub->add_subcommand("clear", "Remove the entries");
+      "GLOAM_CACHE sets the folder (default: ~/.cache/gloam), GLOAM_CACHE_SIZE its maximum size "
+      "(default: 10G);\nthe least recently used entries are removed first.\nExamples:\n  gloam "
+      "cache\n  gloam cache clear visuals");
+  CLI::App* clearing = sub->add_subcommand("clear", "Remove cached entries");
   auto kind = std::make_shared<std::string>();
-  clearing->add_option("KIND", *kind, "Of one kind only, as gloam cache lists them");
+  clearing->add_option("KIND", *kind,
+                       "Kind of entries to remove, as listed by gloam cache; default: all");
   clearing->footer("Example:\n  gloam cache clear");
   sub->callback([&globals, &action, clearing, kind] {
     action = [&globals, is_clear = clearing->parsed(), kind] {

@@ -62,12 +62,12 @@ std::string verdict(const ModelCheck& check) {
                 : fmt::format("; differs from {} in {}", whom, fmt::join(differing, ", "));
   };
   if (check.stock_refusal == "")
-    add("stock MuJoCo's", check.unlike_stock);
+    add("stock MuJoCo's model", check.unlike_stock);
   else
     text += of_stock(check);
   add("its export", check.unlike_export);
   if (!check.export_reason.empty())
-    text += "; MJCF cannot say this level exactly: " + check.export_reason;
+    text += "; MJCF cannot express this scene exactly: " + check.export_reason;
   return text.substr(2);
 }
 
@@ -105,7 +105,10 @@ int check(const CheckCommand& command, const Globals& globals) {
     return fail(status.error());
   const ScratchFolder scratch;
   if (scratch.path().empty())
-    return fail({ErrorKind::kIo, "there is no room for exports", {}, "set TMPDIR to a folder"});
+    return fail({ErrorKind::kIo,
+                 "cannot create a temporary folder for exports",
+                 {},
+                 "set TMPDIR to a writable folder"});
   size_t passed = 0;
   Json models = Json::array();
   for (const std::string& file : command.files) {
@@ -136,18 +139,16 @@ int check(const CheckCommand& command, const Globals& globals) {
 }  // namespace
 
 void add_check(CLI::App& app, Globals& globals, Action& action) {
-  CLI::App* sub = app.add_subcommand(
-      "check", "Compare models with stock MuJoCo, and with what comes back from an export");
+  CLI::App* sub =
+      app.add_subcommand("check", "Compare models with stock MuJoCo and with their own exports");
   auto command = std::make_shared<CheckCommand>();
   sub->add_option("FILE", command->files, "Scenes or models")->required();
   add_access_options(*sub, command->access, command->packages);
   sub->footer(
-      "Every size, option and array of mjModel is compared, bit for bit. Exit code 1 if one "
-      "differs "
-      "or a file does\nnot load; then stock MuJoCo is asked too, which reads whatever the file "
-      "names.\n"
-      "Examples:\n  gloam check robot.urdf --package my_robot=.\n  gloam check robots/*.xml "
-      "--json");
+      "Compares all sizes, options and arrays of mjModel bit for bit. The exit code is 1 if "
+      "anything differs or a file\ndoes not load; such a file is also loaded by stock MuJoCo, "
+      "which reads every file that it refers to.\nExamples:\n  gloam check robot.urdf --package "
+      "my_robot=.\n  gloam check robots/*.xml --json");
   sub->callback([&globals, &action, command] {
     action = [&globals, command] { return check(*command, globals); };
   });

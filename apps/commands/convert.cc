@@ -39,9 +39,9 @@ Status parse_scale(const std::string& text, Vec3* scale) {
   }
   if (at != end || (numbers.size() != 1 && numbers.size() != 3))
     return Error{ErrorKind::kUsage,
-                 fmt::format("--scale {}: expected one number other than 0, or three", text),
+                 fmt::format("--scale {}: expected one or three numbers other than 0", text),
                  {},
-                 "for example 0.5, 1,1,2 or -1,1,1, which mirrors"};
+                 "for example 0.5, 1,1,2 or -1,1,1 (mirrored)"};
   numbers.resize(3, numbers[0]);
   *scale = {numbers[0], numbers[1], numbers[2]};
   return {};
@@ -92,7 +92,7 @@ int convert(ConvertCommand command, const Globals& globals) {
   say("mass       {:.4g} kg of {:.4g} m³\n", r.mass, r.volume);
   say("colliders  {}, in {:.2f} s\n", count_kinds(r.colliders), r.seconds);
   if (!r.colliders.empty())
-    say("overlap    {}surfaces {:.3g} mm apart in the mean, {:.3g} mm at most\n",
+    say("overlap    {}surfaces {:.3g} mm apart on average, {:.3g} mm at most\n",
         r.is_closed ? fmt::format("{:.1f} % of the volumes, ", 100 * r.shared) : "",
         1e3 * r.mean_distance, 1e3 * r.max_distance);
   for (const std::string& note : r.notes) say("note       {}\n", note);
@@ -102,23 +102,31 @@ int convert(ConvertCommand command, const Globals& globals) {
 }  // namespace
 
 void add_convert(CLI::App& app, Globals& globals, Action& action) {
-  CLI::App* sub = app.add_subcommand("convert", "Tell what a mesh file becomes as an [[object]]");
+  CLI::App* sub = app.add_subcommand(
+      "convert", "Report the body and colliders that a mesh file produces as an [[object]]");
   auto command = std::make_shared<ConvertCommand>();
   sub->add_option("FILE", command->file, "glTF, GLB, OBJ, STL or PLY")->required();
-  sub->add_option("--node", command->object.node, "One node by its name");
-  sub->add_option("--colliders", command->object.colliders, "As in [[object]]");
+  sub->add_option("--node", command->object.node,
+                  "Name of a node to convert; default: the whole file");
+  sub->add_option("--colliders", command->object.colliders,
+                  "Kind of colliders: auto (default), box, sphere, capsule, hull, hulls or none");
   ObjectOptions& o = command->object;
   sub->add_option("--scale", command->scale,
-                  "One number, or three along its axes, as 2, 1,1,2 or -1,1,1");
-  sub->add_option("--up", o.up, "Axis of the file that points up; auto: y of glTF, z of the others")
+                  "Scale factor, or one factor per axis, such as 2, 1,1,2 or -1,1,1; default: 1");
+  sub->add_option("--up", o.up,
+                  "Axis of the file that points up; auto: y for glTF, z for other formats")
       ->check(CLI::IsMember({"auto", "y", "z"}));
-  sub->add_option("--unit", o.unit, "Metres of one unit of the file: 0.001 for millimetres")
+  sub->add_option("--unit", o.unit,
+                  "Length unit of the file in metres, such as 0.001 for millimetres; default: 1")
       ->check(positive_number());
-  sub->add_option("--density", o.density, "kg/m³ of its volume")->check(positive_number());
-  sub->add_option("--mass", o.mass, "kg, whatever its volume")->check(positive_number());
+  sub->add_option("--density", o.density, "Density in kg/m³; default: 1000")
+      ->check(positive_number());
+  sub->add_option("--mass", o.mass, "Mass in kg; overrides --density")->check(positive_number());
   sub->add_option("--concavity", o.concavity,
-                  "hulls: how far a part may be from its hull, of the size: 0.01 … 1");
-  sub->add_option("--max-hulls", o.max_hulls, "hulls: at most, 1 … 256");
+                  "For hulls: maximum distance between a part and its hull as a fraction of the "
+                  "size, 0.01 … 1; default: 0.05");
+  sub->add_option("--max-hulls", o.max_hulls,
+                  "For hulls: maximum number of hulls, 1 … 256; default: 32");
   add_access_options(*sub, command->access, command->packages);
   sub->footer(
       "Examples:\n  gloam convert assets/models/lantern/lantern.glb --colliders hull\n"

@@ -69,12 +69,12 @@ int demo_adversity(const DemoCommand& command, const Globals& globals) {
   std::error_code error;
   std::filesystem::create_directories(request.out, error);
   if (error) {
-    return fail(Error{ErrorKind::kInput, fmt::format("cannot make folder {}: {}",
+    return fail(Error{ErrorKind::kInput, fmt::format("cannot create folder {}: {}",
                                                      request.out.string(), error.message())});
   }
   nlohmann::json json = nlohmann::json::array();
   if (!globals.json)
-    std::printf("place      level  visibility  illuminance  contrast  LiDAR returns  of media\n");
+    std::printf("place      level  visibility  illuminance  contrast  LiDAR returns  from media\n");
   for (const char* place : {"house", "warehouse"}) {
     auto scene = load_scene(*home / "examples" / fmt::format("adversity_{}.toml", place));
     if (!scene.ok()) return fail(scene.error());
@@ -98,7 +98,7 @@ int demo_adversity(const DemoCommand& command, const Globals& globals) {
       }
       const std::string visibility =
           row.visibility >= 1e5 ? "clear" : fmt::format("{:.1f} m", row.visibility);
-      std::printf("%-9s  %-5s  %10s  %8.0f lx  %8.2f  %13.2f  %8.2f\n", place, row.name.c_str(),
+      std::printf("%-9s  %-5s  %10s  %8.0f lx  %8.2f  %13.2f  %10.2f\n", place, row.name.c_str(),
                   visibility.c_str(), row.illuminance, row.contrast, row.lidar_returns,
                   row.media_returns);
     }
@@ -114,16 +114,17 @@ int demo_adversity(const DemoCommand& command, const Globals& globals) {
 }  // namespace
 
 void add_demo(CLI::App& app, Globals& globals, Action& action) {
-  CLI::App* sub =
-      app.add_subcommand("demo", "A quadruped walks 10 s through a furnished, path-traced room");
+  CLI::App* sub = app.add_subcommand(
+      "demo", "Run the demo: a quadruped walks through a furnished, path-traced room for 10 s");
   auto command = std::make_shared<DemoCommand>();
   sub->add_option("WHICH", command->which,
-                  "adversity: through a house on fire and a dusty warehouse, by level")
+                  "adversity: a house on fire and a dusty warehouse, at each level of adversity")
       ->check(CLI::IsMember({"adversity"}));
   sub->add_flag("--quick", command->quick,
-                "4 s at 5 pictures a second, under a minute; of adversity 3 s at one: two minutes");
+                "Simulate 4 s at 5 images per second, in under a minute; with adversity 3 s at one "
+                "image per second, in two minutes");
   sub->add_option("--out", command->out,
-                  "Results folder; default results/demo or results/adversity");
+                  "Results folder; default: results/demo or results/adversity");
   sub->footer("Examples:\n  gloam demo --quick\n  gloam demo adversity");
   sub->callback([&globals, &action, command] {
     action = [&globals, command] {

@@ -153,12 +153,13 @@ void print_text(const EvaluateCommand& command, const Evaluation& found) {
   const TrajectoryPair& pair = found.pair;
   say("reference  {}: {} poses\nestimate   {}: {} poses\n", command.reference,
       found.reference_poses, command.estimate, found.estimate_poses);
-  say("{} at the same times, {:.5g} m long in the reference, {:.5g} m in the estimate\n",
+  say("{} pairs of poses; path length {:.5g} m in the reference, {:.5g} m in the estimate\n",
       pair.reference.size(), pair.reference.path_length(), pair.estimate.path_length());
   const RotationRows& R = found.alignment.R_AB;
   const Vec3& p = found.alignment.p_AB;
   const double cosine = std::clamp((R[0] + R[4] + R[8] - 1) / 2, -1.0, 1.0);
-  say("aligned by {}: turned by {:.4g} deg, moved by {:.4g} {:.4g} {:.4g} m, scale {:.6g}\n\n",
+  say("aligned by {}: rotated by {:.4g} deg, translated by {:.4g} {:.4g} {:.4g} m, scale "
+      "{:.6g}\n\n",
       command.align, std::acos(cosine) * kDegrees, p.x, p.y, p.z, found.alignment.scale);
   say("{:<30}", "");
   for (const char* name : {"rmse", "mean", "median", "std", "min", "max"}) say(" {:>10}", name);
@@ -206,32 +207,38 @@ int run_evaluation(const EvaluateCommand& command, const Globals& globals) {
 }  // namespace
 
 void add_evaluate(CLI::App& app, Globals& globals, Action& action) {
-  CLI::App* sub =
-      app.add_subcommand("evaluate", "Measure a trajectory against a reference: ATE and RPE");
+  CLI::App* sub = app.add_subcommand(
+      "evaluate", "Compute the errors of a trajectory against a reference: ATE and RPE");
   auto command = std::make_shared<EvaluateCommand>();
   sub->add_option("ESTIMATE", command->estimate,
-                  "TUM, KITTI or EuRoC file, or a log's topic as run.mcap:/odom")
+                  "TUM, KITTI or EuRoC file, or a topic of a log, such as run.mcap:/odom")
       ->required();
-  sub->add_option("--reference", command->reference, "The same, of what is true")->required();
-  sub->add_option("--align", command->align,
-                  "se3 (default), sim3 (with scale), scale, origin (first poses) or none")
+  sub->add_option("--reference", command->reference,
+                  "Reference trajectory (ground truth), in the same form")
+      ->required();
+  sub->add_option(
+         "--align", command->align,
+         "Alignment: se3 (default), sim3 (with scale), scale, origin (first poses) or none")
       ->check(CLI::IsMember({"se3", "sim3", "scale", "origin", "none"}));
-  sub->add_option("--rpe-delta", command->delta, "Distance of the poses that RPE compares; 1")
+  sub->add_option("--rpe-delta", command->delta,
+                  "Distance between the poses that RPE compares; default: 1")
       ->check(positive_number());
   sub->add_option("--rpe-unit", command->unit,
-                  "Its unit: m along the way (default), f frames, s, deg or rad")
+                  "Unit of --rpe-delta: m along the path (default), f (frames), s, deg or rad")
       ->check(CLI::IsMember({"m", "f", "s", "deg", "rad"}));
   sub->add_flag("--all-pairs", command->all_pairs,
-                "RPE from every pose on, not from the end of the pair before");
-  sub->add_option("--rpe-tolerance", command->tolerance,
-                  "Of the delta, with --all-pairs; default 0.1")
+                "Start an RPE pair at every pose, not only where the previous pair ends");
+  sub->add_option(
+         "--rpe-tolerance", command->tolerance,
+         "Tolerance of the distance as a fraction of --rpe-delta, with --all-pairs; default: 0.1")
       ->check(non_negative_number());
   sub->add_option("--max-difference", command->association.max_difference,
-                  "Largest difference of times that count as equal, seconds; default 0.01")
+                  "Largest time difference between matching poses in seconds; default: 0.01")
       ->check(non_negative_number());
   sub->add_option("--offset", command->association.offset,
-                  "Added to the estimate's times, seconds");
-  sub->add_option("--plot", command->plot, "SVG file: both from above, errors over time");
+                  "Offset added to the times of the estimate, in seconds; default: 0");
+  sub->add_option("--plot", command->plot,
+                  "SVG file to write: both paths from above, and the errors over time");
   sub->footer(
       "Examples:\n  gloam evaluate odom.tum --reference truth.tum\n  gloam evaluate "
       "run.mcap:/go/slam --reference run.mcap:/tf:go/trunk --align none --plot go.svg");

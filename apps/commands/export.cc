@@ -34,8 +34,8 @@ struct TopicWriter {
 const std::map<std::string, TopicWriter> kTopicWriters = {
     {"csv", {write_topic_table, "rows"}},
     {"parquet", {write_topic_parquet, "rows"}},
-    {"png", {write_topic_pictures, "pictures"}},
-    {"mp4", {write_topic_video, "pictures"}}};
+    {"png", {write_topic_pictures, "images"}},
+    {"mp4", {write_topic_video, "images"}}};
 
 int tell_count(const ExportCommand& command, const Result<int64_t>& count, const char* parts) {
   if (!count.ok()) return fail(count.error());
@@ -46,15 +46,15 @@ int tell_count(const ExportCommand& command, const Result<int64_t>& count, const
 int export_log(const ExportCommand& command) {
   if (command.to.empty())
     return fail({ErrorKind::kUsage,
-                 "of a log --to says what is written",
+                 "--to is required to export a log",
                  {},
                  "one of tum, kitti, euroc, csv, parquet, png, mp4"});
   if (const auto writer = kTopicWriters.find(command.to); writer != kTopicWriters.end()) {
     if (command.topic.empty())
       return fail({ErrorKind::kUsage,
-                   "--to " + command.to + " needs a --topic",
+                   "--to " + command.to + " requires --topic",
                    {},
-                   "`gloam info " + command.file + "` lists them"});
+                   "`gloam info " + command.file + "` lists the topics"});
     return tell_count(command, writer->second.write(command.file, command.topic, command.out),
                       writer->second.parts);
   }
@@ -92,18 +92,19 @@ int export_scene(ExportCommand& command, const Globals& globals) {
 
 void add_export(CLI::App& app, Globals& globals, Action& action) {
   CLI::App* sub = app.add_subcommand(
-      "export", "Write a scene as one MJCF with its assets, or a log's trajectories and tables");
+      "export",
+      "Export a scene to MJCF with its assets, or trajectories, tables and images from a log");
   auto command = std::make_shared<ExportCommand>();
   sub->add_option("FILE", command->file, "Scene, model, log or metrics.csv")->required();
   sub->add_option("--out", command->out,
-                  "Folder to write scene.xml and its assets into; of a log the file to write")
+                  "Folder for scene.xml and its assets; for logs and tables, the file to write")
       ->required();
   sub->add_option("--to", command->to,
-                  "Of a log: tum, kitti, euroc (poses), csv, parquet (any topic), png, mp4 "
-                  "(pictures); of a CSV table: parquet")
+                  "Format for logs: tum, kitti, euroc (poses), csv, parquet (any topic), png, mp4 "
+                  "(images); for CSV tables: parquet")
       ->check(CLI::IsMember({"tum", "kitti", "euroc", "csv", "parquet", "png", "mp4"}));
   sub->add_option("--topic", command->topic,
-                  "Of a log: the topic; a frame of /tf as in /tf:robot/base");
+                  "Topic of the log; a frame of /tf is written as /tf:robot/base");
   command->scene.add_to(*sub);
   sub->footer(
       "Examples:\n  gloam export examples/demo.toml --out exported\n  gloam export run.mcap --to "

@@ -68,9 +68,9 @@ void print_text(const WorldInfo& info, const NotDrawn& not_drawn,
                 const std::vector<Section>& sections) {
   say("{} positions, {} velocities, {} controls; time step {} s; mass {:.3f} kg\n", info.nq,
       info.nv, info.nu, info.timestep, info.mass);
-  say("{:.2f} MiB of model, {} triangles drawn\n",
+  say("model size {:.2f} MiB, {} triangles rendered\n",
       static_cast<double>(info.model_bytes) / (1 << 20), info.triangles);
-  if (!info.drawn.empty()) say("\ndrawn ({})\n", info.drawn.size());
+  if (!info.drawn.empty()) say("\nrandomized ({})\n", info.drawn.size());
   for (const DrawnOption& d : info.drawn) say("  {} = {}\n", d.option, d.value);
   if (!info.regions.empty()) say("\nregions ({})\n", info.regions.size());
   for (const Region& r : info.regions) {
@@ -87,7 +87,7 @@ void print_text(const WorldInfo& info, const NotDrawn& not_drawn,
   }
   for (const auto& [title, errors] :
        {std::pair("notes", &info.notes), std::pair("not supported", &info.unsupported),
-        std::pair("not drawn unless asked for", &not_drawn.hidden)}) {
+        std::pair("hidden by default", &not_drawn.hidden)}) {
     if (!errors->empty()) say("\n{} ({})\n", title, errors->size());
     for (const Error& error : *errors) say("  {}\n", error.to_string());
   }
@@ -96,7 +96,7 @@ void print_text(const WorldInfo& info, const NotDrawn& not_drawn,
     return note.kind == ErrorKind::kUnsupported || note.message.starts_with("MuJoCo: ");
   });
   if (info.unsupported.empty() && not_drawn.hidden.empty() && !is_ignored)
-    say("\neverything in the file is simulated and drawn\n");
+    say("\neverything in the file is simulated and rendered\n");
 }
 
 nlohmann::ordered_json pose_json(const Pose& X) {
@@ -142,7 +142,7 @@ void print_streams_json(const World& world) {
 
 void print_streams(const World& world) {
   const std::vector<BodyInfo> bodies = world.bodies();
-  say("says\n  {:<10} {:<32} {:<24} {:<12} {}\n", "kind", "name", "on body", "rate", "outputs");
+  say("outputs\n  {:<10} {:<32} {:<24} {:<12} {}\n", "kind", "name", "on body", "rate", "outputs");
   for (const StreamInfo& stream : world.streams()) {
     const std::string& parent = bodies[static_cast<size_t>(stream.parent.id)].name;
     say("  {:<10} {:<32} {:<24} {:<12} {}\n", to_string(stream.kind), stream.name,
@@ -154,7 +154,7 @@ void print_streams(const World& world) {
                           stream.outputs.size())
             : fmt::format("{}", fmt::join(stream.outputs, " ")));
   }
-  say("\nhears\n");
+  say("\ninputs\n");
   for (const InputInfo& input : world.inputs())
     say("  {:<10} {:<32} {}\n", to_string(input.kind), input.name,
         input.elements.empty() || input.elements.size() > 6
@@ -212,20 +212,20 @@ int info(InfoCommand& command, const Globals& globals) {
 }  // namespace
 
 void add_info(CLI::App& app, Globals& globals, Action& action) {
-  CLI::App* sub =
-      app.add_subcommand("info", "List what a scene or model holds, and what is not supported");
+  CLI::App* sub = app.add_subcommand(
+      "info", "Summarize a scene, model or log, and report unsupported elements");
   auto command = std::make_shared<InfoCommand>();
   CLI::Option* file = sub->add_option("FILE", command->file, "Scene, model or log");
-  CLI::Option* schema =
-      sub->add_flag("--schema", command->schema,
-                    "How much of MuJoCo's own schema is mirrored, and what sets what");
+  CLI::Option* schema = sub->add_flag(
+      "--schema", command->schema,
+      "Report the coverage of MuJoCo's schema: attributes and the fields that they set");
   file->excludes(schema);
   sub->add_flag("--streams", command->streams,
-                "What a simulation of it can say and hear: cameras, sensors, controls …")
+                "List output streams and inputs of the simulation: cameras, sensors, controls …")
       ->excludes(schema);
-  sub->add_flag("--topics", command->topics, "ROS 2 topics of a simulation of it")
+  sub->add_flag("--topics", command->topics, "List ROS 2 topics of the simulation")
       ->excludes(schema);
-  sub->add_flag("--metrics", command->metrics, "Metrics of a run of it: columns of metrics.csv")
+  sub->add_flag("--metrics", command->metrics, "List metrics of a run: the columns of metrics.csv")
       ->excludes(schema);
   command->scene.add_keyframe_to(*sub);
   command->scene.add_to(*sub);

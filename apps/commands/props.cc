@@ -30,7 +30,7 @@ int list_props(const Globals& globals) {
   }
   size_t width = 4;
   for (const PropInfo& p : props) width = std::max(width, p.kind.size());
-  say("{:{}}  {:>18}  {:>8}  what\n", "kind", width, "size [m]", "mass");
+  say("{:{}}  {:>18}  {:>8}  description\n", "kind", width, "size [m]", "mass");
   for (const PropInfo& p : props)
     say("{:{}}  {:>18}  {:>5.{}f} kg  {}{}\n", p.kind, width,
         fmt::format("{:.2f} {:.2f} {:.2f}", p.size.x, p.size.y, p.size.z), p.mass,
@@ -41,10 +41,11 @@ int list_props(const Globals& globals) {
 }  // namespace
 
 void add_props(CLI::App& app, Globals& globals, Action& action) {
-  CLI::App* sub = app.add_subcommand("props", "List the things that [[prop]] can put into a scene");
+  CLI::App* sub =
+      app.add_subcommand("props", "List the objects that a [[prop]] can add to a scene");
   sub->footer(
-      "Size is depth, width and height; things are fixed unless they are loose.\n"
-      "Examples:\n  gloam props\n  gloam --json props");
+      "The size is depth, width and height; objects are fixed unless they are marked as "
+      "loose.\nExamples:\n  gloam props\n  gloam --json props");
   sub->callback([&globals, &action] { action = [&globals] { return list_props(globals); }; });
 }
 

@@ -42,7 +42,7 @@ int record(const RecordCommand& command_line, const Globals& globals) {
     return fail({ErrorKind::kUsage,
                  "there is a file '" + command.log + "' already",
                  {},
-                 "choose another name, or --overwrite"});
+                 "choose another name, or replace it with --overwrite"});
   auto world = compile(*scene, globals, command.options.keyframe);
   if (!world.ok()) return fail(world.error());
   return run_and_report(*world, request, globals);
@@ -54,21 +54,24 @@ void add_record(CLI::App& app, Globals& globals, Action& action) {
   CLI::App* sub = app.add_subcommand("record", "Simulate a scene or model into a log (MCAP)");
   auto command = std::make_shared<RecordCommand>();
   sub->add_option("FILE", command->file, "Scene or model")->required();
-  sub->add_option("-o,--log", command->log, "Log to write")->required();
+  sub->add_option("-o,--log", command->log, "Log file to write")->required();
   sub->add_option("--topics", command->topics,
-                  "Topics of the log, * for any text; default: all but raw pictures")
+                  "Topics to record, where * matches any text; default: all except raw images, "
+                  "depth and ids")
       ->delimiter(',');
-  sub->add_option("--duration", command->options.duration, "Seconds of simulation time")
+  sub->add_option("--duration", command->options.duration,
+                  "Duration in seconds of simulation time; default: the scene's")
       ->check(positive_number());
   command->options.add_to(*sub);
   sub->add_flag("--overwrite", command->overwrite, "Replace an existing log");
   sub->add_flag("--durable", command->durable,
-                "Sync each chunk to the disk: outlives a loss of power, too");
+                "Sync each chunk to the disk, so that it survives a power failure");
   sub->add_flag("--embed", command->embed,
-                "Put all files of the scene into the log, to replay it on any machine");
+                "Embed all files of the scene in the log, to replay it on any machine");
   sub->add_flag("--realtime", command->realtime,
-                "Pace by the wall clock; a slow disk then loses messages");
-  sub->add_option("--speed", command->speed, "Simulated seconds per second, with --realtime")
+                "Run in real time; messages are lost if the disk is too slow");
+  sub->add_option("--speed", command->speed,
+                  "Simulated seconds per second of real time, with --realtime; default: 1")
       ->check(positive_number());
   sub->footer(
       "Examples:\n  gloam record examples/house_fire.toml -o fire.mcap --duration 3\n  gloam "

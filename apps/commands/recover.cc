@@ -34,7 +34,7 @@ int recover(const RecoverCommand& command, const Globals& globals) {
                                          {"damage", done->damage}};
     put_json(json);
   } else {
-    say("{}: {} messages kept, {} known to be lost, {} bytes not read\n", to.string(),
+    say("{}: {} messages recovered, {} known to be lost, {} bytes unreadable\n", to.string(),
         done->messages, done->messages_lost, done->bytes_lost);
     for (const std::string& damage : done->damage) say("  {}\n", damage);
   }
@@ -44,11 +44,12 @@ int recover(const RecoverCommand& command, const Globals& globals) {
 }  // namespace
 
 void add_recover(CLI::App& app, Globals& globals, Action& action) {
-  CLI::App* sub = app.add_subcommand("recover", "Make a log whole that was cut or damaged");
+  CLI::App* sub = app.add_subcommand("recover", "Repair a truncated or damaged log");
   auto command = std::make_shared<RecoverCommand>();
-  sub->add_option("LOG", command->log, "MCAP log of any writer")->required();
-  sub->add_option("-o,--out", command->out, "New log; default: LOG_recovered.mcap beside it");
-  sub->footer("Exit codes: 0 nothing lost, 3 something lost\nExample: gloam recover run.mcap");
+  sub->add_option("LOG", command->log, "MCAP log from any writer")->required();
+  sub->add_option("-o,--out", command->out,
+                  "Repaired log to write; default: LOG_recovered.mcap beside the log");
+  sub->footer("Exit codes: 0 no data lost, 3 some data lost\nExample: gloam recover run.mcap");
   sub->callback([&globals, &action, command] {
     action = [&globals, command] { return recover(*command, globals); };
   });

@@ -33,8 +33,8 @@ std::string channel_help() {
     if (has_still) (channel.model.empty() ? plain : modelled) += fmt::format(" {}", channel.name);
   }
   return fmt::format(
-      "{};{} of cameras with these models. A channel stands for all its files; their own names, as "
-      "of gloam run, choose one: depth_exr",
+      "{};{} of cameras with these models. A channel selects all its files; a file name as in "
+      "gloam run selects one, such as depth_exr",
       plain, modelled);
 }
 
@@ -98,13 +98,13 @@ void add_render(CLI::App& app, Globals& globals, Action& action) {
   sub->add_option("FILE", command->file, "Scene or model")->required();
   command->options.add_to(*sub);
   sub->get_option("--output")->description(channel_help());
-  sub->get_option("--spp")->description(fmt::format(
-      "Samples per pixel; default: {}, whatever the scene says; with --error at most, default "
-      "4096",
-      kStillSamples));
-  sub->add_option("--time", command->time, "Simulation time of the picture in seconds")
+  sub->get_option("--spp")->description(
+      fmt::format("Samples per pixel; default: {}, not the scene's; with --error: the most per "
+                  "pixel, default 4096",
+                  kStillSamples));
+  sub->add_option("--time", command->time, "Simulation time of the image in seconds; default: 0")
       ->check(non_negative_number());
-  sub->add_option("--out", command->out, "Folder for the pictures; default: here");
+  sub->add_option("--out", command->out, "Folder for the images; default: the current folder");
   sub->footer(
       "Examples:\n  gloam render robot.xml --camera free --spp 256 --resolution 1280x720\n"
       "  gloam render room.toml --error 0.02 --no-denoise --output rgb,radiance,samples\n"

@@ -62,9 +62,9 @@ Result<LogReplay> replay_of(const ReplayCommand& command) {
 int record_variants(const ReplayCommand& command, LogReplay replay, const Globals& globals) {
   if (command.randomize.empty())
     return fail({ErrorKind::kUsage,
-                 "--variants needs --randomize",
+                 "--variants requires --randomize",
                  {},
-                 "a file with [[randomize]] tables says what is drawn"});
+                 "give a file with [[randomize]] tables"});
   const VariantRequest request{.replay = std::move(replay),
                                .randomize = command.randomize,
                                .count = command.variants,
@@ -79,7 +79,7 @@ int record_variants(const ReplayCommand& command, LogReplay replay, const Global
     put_json(json);
   } else {
     for (const ReplayVariant& v : *variants)
-      say("{}  seed {}{}\n", v.out.string(), v.seed, v.was_done ? "  (done before)" : "");
+      say("{}  seed {}{}\n", v.out.string(), v.seed, v.was_done ? "  (already done)" : "");
   }
   return 0;
 }
@@ -104,10 +104,10 @@ int play(const ReplayCommand& command, const LogReplay& replay) {
 int look_again(const ReplayCommand& command, const Globals& globals) {
   if (command.out.empty() && command.to_log.empty() && !command.live.any({}))
     return fail({ErrorKind::kUsage,
-                 "nothing is asked for",
+                 "no action given",
                  {},
-                 "--verify compares; --out FOLDER or --log FILE records the run again; --view "
-                 "shows it"});
+                 "use --verify to compare the run, --out FOLDER or --log FILE to record it again, "
+                 "or --view to show it"});
   auto replay = replay_of(command);
   if (!replay.ok()) return fail(replay.error());
   if (command.live.any({})) return play(command, *replay);
@@ -130,7 +130,7 @@ int replay(const ReplayCommand& command, const Globals& globals) {
     say("{} of {} steps differ ({} states compared in {} run{})\n", found->differing, found->steps,
         found->states, found->runs, found->runs == 1 ? "" : "s");
     if (!found->is_equal())
-      say("run {}: equal up to step {}, not at step {}: {}\n", found->run, found->equal_step,
+      say("run {}: equal up to step {}, different at step {}: {}\n", found->run, found->equal_step,
           found->step, found->where);
     for (const std::string& note : found->notes) say("note: {}\n", note);
   }
@@ -140,45 +140,51 @@ int replay(const ReplayCommand& command, const Globals& globals) {
 }  // namespace
 
 void add_replay(CLI::App& app, Globals& globals, Action& action) {
-  CLI::App* sub = app.add_subcommand(
-      "replay", "Step the run of a log again: compare it, or record it under another sky");
+  CLI::App* sub =
+      app.add_subcommand("replay", "Replay a log: verify it, or record it with another appearance");
   auto command = std::make_shared<ReplayCommand>();
-  sub->add_option("LOG", command->log, "Log that Gloam has written")->required();
+  sub->add_option("LOG", command->log, "Log written by Gloam")->required();
   sub->add_flag("--verify", command->verify,
-                "Compare every logged state and hash: 0 of N steps differ");
+                "Step all runs again and compare every logged state and hash");
   sub->add_option("--folder", command->folder,
-                  "Folder of the scene's files, or one above it; default: beside the log or where "
-                  "they were on this machine");
-  sub->add_option("--run", command->run, "Which run of the log, from 0: a reset ends one");
+                  "Folder of the scene's files, or one above it; default: beside the log, or the "
+                  "original place on this machine");
+  sub->add_option("--run", command->run,
+                  "Run of the log, counted from 0; each reset starts a new run");
   sub->add_flag("--poses", command->poses,
-                "Take bodies' poses from the logged states, do not step the run again");
+                "Move bodies by the logged states instead of stepping the run again");
   sub->add_flag("--restep", command->restep,
-                "Let changes act on the motion: a new run under the log's Commands")
+                "Let changes affect the motion: a new run with the log's Commands")
       ->excludes("--poses");
-  sub->add_option("--overlay", command->overlays,
-                  "Scene file whose tables are laid over the scene: cameras, lamps (repeatable)");
-  sub->add_option("--adversity", command->adversity, "none, minor or major");
-  sub->add_option("--variants", command->variants, "Number of variants into OUT/0000, 0001 …")
+  sub->add_option(
+      "--overlay", command->overlays,
+      "Scene file whose tables are applied on top of the scene: cameras, lamps … (repeatable)");
+  sub->add_option("--adversity", command->adversity, "Level of adversity: none, minor or major");
+  sub->add_option("--variants", command->variants,
+                  "Number of variants to record, into OUT/0000, 0001 …")
       ->check(CLI::Range(1, 1000000));
   sub->add_option("--randomize", command->randomize,
-                  "Scene file with the [[randomize]]s that variants draw")
+                  "Scene file with the [[randomize]] tables of the variants")
       ->check(CLI::ExistingFile);
   sub->add_option("--seed", command->seed,
-                  "Seed of [[randomize]]s of overlays, of the first variant");
+                  "Seed of the [[randomize]] tables of overlays, or of the first variant");
   sub->add_option("--set", command->settings,
-                  "Change what is seen, as weather.visibility=8 (repeatable)");
+                  "Change a setting of the appearance, such as weather.visibility=8 (repeatable)");
   command->render.add_to(*sub);
-  sub->add_option("--out", command->out, "Results folder of the run as it is seen now");
-  sub->add_option("--log", command->to_log, "New log of it");
+  sub->add_option("--out", command->out, "Results folder of the replay");
+  sub->add_option("--log", command->to_log, "Log file of the replay");
   sub->add_flag("--overwrite", command->overwrite, "Replace an existing results folder");
-  sub->add_option("--camera", command->cameras, "Cameras to record; default: the scene's")
+  sub->add_option("--camera", command->cameras,
+                  "Name of a camera to record (repeatable); default: the scene's cameras")
       ->delimiter(',');
-  sub->add_option("--output", command->outputs, "What to record, as of `gloam run`")
+  sub->add_option("--output", command->outputs, "Outputs to record, as in `gloam run`")
       ->delimiter(',');
-  sub->add_option("--resolution", command->resolution, "WIDTHxHEIGHT of every camera");
-  sub->add_option("--duration", command->duration, "Seconds of it; default: all")
+  sub->add_option("--resolution", command->resolution,
+                  "Image size of every camera in pixels, as WIDTHxHEIGHT");
+  sub->add_option("--duration", command->duration,
+                  "Duration in seconds of simulation time; default: the whole run")
       ->check(positive_number());
-  sub->add_flag("--loop", command->live.loop, "Begin again at the end, where it is live");
+  sub->add_flag("--loop", command->live.loop, "Live replays: start again at the end");
   command->live.add_to(*sub);
   sub->footer(
       "Exit codes of --verify: 0 equal, 1 different, 3 a run could not be verified\nExamples:\n  "

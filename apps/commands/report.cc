@@ -23,7 +23,7 @@ int write_page(const ReportCommand& command, const Globals& globals) {
   request.out = command.out;
   const auto outcome = write_report(request);
   if (!outcome.ok()) return fail(outcome.error());
-  for (const Error& error : outcome->left_out) tell("gloam: left out: {}\n", error.to_string());
+  for (const Error& error : outcome->left_out) tell("gloam: omitted: {}\n", error.to_string());
   if (globals.json) {
     nlohmann::ordered_json json = {{"out", request.out.string()},
                                    {"runs", outcome->runs},
@@ -33,7 +33,7 @@ int write_page(const ReportCommand& command, const Globals& globals) {
     for (const Error& error : outcome->left_out) json["left_out"].push_back(error.to_string());
     put_json(json);
   } else {
-    say("{}: {} run{}, {} pictures, {:.1f} MB\n", request.out.string(), outcome->runs,
+    say("{}: {} run{}, {} images, {:.1f} MB\n", request.out.string(), outcome->runs,
         outcome->runs == 1 ? "" : "s", outcome->pictures,
         1e-6 * static_cast<double>(outcome->bytes));
   }
@@ -43,17 +43,17 @@ int write_page(const ReportCommand& command, const Globals& globals) {
 }  // namespace
 
 void add_report(CLI::App& app, Globals& globals, Action& action) {
-  CLI::App* sub = app.add_subcommand("report", "Make one HTML file of results folders");
+  CLI::App* sub = app.add_subcommand("report", "Create one HTML report from results folders");
   auto command = std::make_shared<ReportCommand>();
-  sub->add_option("RUN", command->runs, "Results folders, of gloam run or gloam replay")
-      ->required();
-  sub->add_option("-o,--out", command->out, "File to write; default: report.html");
+  sub->add_option("RUN", command->runs, "Results folders of gloam run or gloam replay")->required();
+  sub->add_option("-o,--out", command->out, "HTML file to write; default: report.html");
   sub->add_flag("--overwrite", command->request.overwrite, "Replace an existing file");
   sub->add_option("--title", command->request.title, "Heading; default: the scenes' names");
-  sub->add_option("--instants", command->request.instants, "Pictures in a strip; default: 6")
+  sub->add_option("--instants", command->request.instants,
+                  "Number of images per camera and run; default: 6")
       ->check(CLI::Range(1, 24));
   sub->footer(
-      "Exit code 3: something could not be read; the page tells what\nExamples:\n  gloam report "
+      "Exit code 3: some results could not be read; the page lists them\nExamples:\n  gloam report "
       "results/clear results/smoky results/night -o weather.html\n  gloam report results/walk-* -o "
       "walk.html");
   sub->callback([&globals, &action, command] {

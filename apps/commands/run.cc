@@ -52,7 +52,8 @@ Status place_log(RunRequest* request) {
   std::error_code code;
   std::filesystem::create_directories(request->out, code);
   if (code)
-    return Error{ErrorKind::kIo, "no folder " + request->out.string() + ": " + code.message()};
+    return Error{ErrorKind::kIo,
+                 "cannot create folder " + request->out.string() + ": " + code.message()};
   request->log.file = request->out / kRunLogName;
   request->log.overwrite = request->overwrite;
   return {};
@@ -91,10 +92,11 @@ int run_world(const World& world, RunRequest request, const RunCommand& command,
 int run_on(const RunCommand& command, const Globals& globals) {
   const RunOptions& o = command.options;
   if (!o.settings.empty() || !o.outputs.empty() || o.seed || o.timestep || !o.tier.empty())
-    return fail({ErrorKind::kUsage,
-                 "a log is gone on from as it is",
-                 {},
-                 "gloam replay LOG --restep --set … runs a changed scene under its Commands"});
+    return fail(
+        {ErrorKind::kUsage,
+         "`--at` cannot change the scene of a log",
+         {},
+         "to run a changed scene with the log's Commands, use gloam replay LOG --restep --set …"});
   auto from = log_checkpoint(command.file, {}, 0, *command.at);
   if (!from.ok()) return fail(from.error());
   RunRequest request;
@@ -133,20 +135,22 @@ int run(const RunCommand& command_line, const Globals& globals) {
 
 void add_run(CLI::App& app, Globals& globals, Action& action) {
   CLI::App* sub =
-      app.add_subcommand("run", "Simulate a scene (.toml) or any MJCF/URDF as it stands");
+      app.add_subcommand("run", "Simulate a scene (.toml) or any unmodified MJCF or URDF");
   auto command = std::make_shared<RunCommand>();
   sub->add_option("FILE", command->file, "Scene or model")->required();
-  sub->add_option("--duration", command->options.duration, "Seconds of simulation time")
+  sub->add_option(
+         "--duration", command->options.duration,
+         "Duration in seconds of simulation time; default: the scene's; live runs: unlimited")
       ->check(positive_number());
   command->options.add_to(*sub);
   sub->add_option("--out", command->out, "Results folder; default for scenes: results/NAME");
-  sub->add_flag("--mcap", command->mcap, "Write a log, too: run.mcap in the results folder");
+  sub->add_flag("--mcap", command->mcap, "Also write a log: run.mcap in the results folder");
   sub->add_flag("--overwrite", command->overwrite, "Replace an existing results folder");
   sub->add_flag("--realtime", command->realtime,
                 "Short for --pace realtime; default: as fast as possible");
   command->live.add_to(*sub);
   sub->add_option("--at", command->at,
-                  "FILE is a log: go on from this time of it [s], for --duration more")
+                  "Resume the log FILE at this time in seconds, for --duration more seconds")
       ->check(non_negative_number());
   sub->footer(
       "Examples:\n  gloam run examples/demo.toml --duration 3\n  gloam run robot.xml --out "

@@ -16,8 +16,8 @@ void add_schema(CLI::App& app, Globals& /*globals*/, Action& action) {
       ->required()
       ->check(CLI::IsMember({"scene", "model"}));
   sub->footer(
-      "Example:\n  gloam schema scene > gloam-scene.json\n"
-      "and as the first line of a scene: #:schema ./gloam-scene.json");
+      "Example:\n  gloam schema scene > gloam-scene.json\nThen begin each scene with the line: "
+      "#:schema ./gloam-scene.json");
   sub->callback([&action, what] {
     action = [what] {
       std::printf("%s\n", (*what == "scene" ? scene_schema() : mjcf::model_schema()).c_str());

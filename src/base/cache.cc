@@ -86,7 +86,7 @@ Result<std::vector<Entry>> list_entries(const CacheFormat& format) {
     return Error{ErrorKind::kIo,
                  fmt::format("cannot read the cache: {}", code.message()),
                  {folder.string(), 0, 0},
-                 "set GLOAM_CACHE to a folder of yours"};
+                 "set GLOAM_CACHE to a folder that you can access"};
   return entries;
 }
 
@@ -161,15 +161,15 @@ Result<uint64_t> cache_limit() {
   const int shift = 10 * static_cast<int>(power);
   if (error != std::errc() || after + (power > 0 ? 1 : 0) != end || value > (UINT64_MAX >> shift))
     return Error{ErrorKind::kInput,
-                 fmt::format("GLOAM_CACHE_SIZE is '{:.60}', which is no size", text),
+                 fmt::format("GLOAM_CACHE_SIZE is '{:.60}', which is not a size", text),
                  {},
-                 "write it in bytes or as 500M or 20G"};
+                 "give it in bytes, or as 500M or 20G"};
   return value << shift;
 }
 
 void keep_in_cache(const fs::path& entry, std::span<const uint8_t> bytes) {
   const Result<uint64_t> set = cache_limit();
-  if (!set.ok()) log_warning("{}; 10G holds", set.error().to_string());
+  if (!set.ok()) log_warning("{}; using the default of 10G", set.error().to_string());
   const uint64_t limit = set.ok() ? *set : kUsualLimit;
   if (bytes.size() > limit) return;
   Status status = make_folder(entry.parent_path());

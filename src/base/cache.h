@@ -27,7 +27,8 @@ struct CacheFormat {
 inline constexpr CacheFormat kModelCache{"models", ".world",
                                          "compiled models with their hulls and textures"};
 inline constexpr CacheFormat kVisualCache{"visuals", ".model", "model files of [[visual]]s"};
-inline constexpr CacheFormat kBvhCache{"bvhs", ".bvh", "trees of large meshes, for cards"};
+inline constexpr CacheFormat kBvhCache{"bvhs", ".bvh",
+                                       "ray-tracing trees of large meshes, for GPUs"};
 inline constexpr CacheFormat kHullCache{"hulls", ".hulls", "convex parts of meshes"};
 inline constexpr CacheFormat kSceneCache{"scenes", ".scene", "folders of logged scenes"};
 

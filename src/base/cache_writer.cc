@@ -38,7 +38,7 @@ void write(const CacheWrite& job) {
     seal_cache_entry(job.magic, &entry);
     keep_in_cache(job.path, entry);
   } catch (const std::bad_alloc&) {
-    log_debug("no memory to keep {} in the cache", job.path.string());
+    log_debug("not enough memory to cache {}", job.path.string());
   }
 }
 

@@ -104,7 +104,7 @@ Error no_memory_for(const std::string& what) {
   return {ErrorKind::kInput,
           "out of memory for " + what,
           {},
-          "give the process more, or lower the resolution or the size of the scene"};
+          "give the process more memory, or lower the resolution or the size of the scene"};
 }
 
 // pthread_create reports EAGAIN.
@@ -119,12 +119,13 @@ Status check_memory(uint64_t bytes, const std::string& what, const std::string& 
   const MemoryRoom room = memory_room();
   if (bytes <= room.bytes) return {};
   const auto gib = [](uint64_t n) { return static_cast<double>(n) / (1 << 30); };
-  return Error{ErrorKind::kInput,
-               fmt::format("{} needs about {:.1f} GiB of memory; the process may take {:.1f} GiB "
-                           "more by {}",
-                           what, gib(bytes), gib(room.bytes), room.limit),
-               {},
-               hint};
+  return Error{
+      ErrorKind::kInput,
+      fmt::format(
+          "{} needs about {:.1f} GiB of memory; the process can use {:.1f} GiB more within {}",
+          what, gib(bytes), gib(room.bytes), room.limit),
+      {},
+      hint};
 }
 
 }  // namespace gloam

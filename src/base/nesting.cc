@@ -203,7 +203,7 @@ std::optional<Excess> json_excess(std::string_view text, uint64_t most_values) {
     if (c == '}' || c == ']') --depth;
     const bool opens = c == '{' || c == '[';
     if (opens && ++depth > kDeepestJson)
-      return Excess{i, fmt::format("it nests deeper than {} levels", kDeepestJson)};
+      return Excess{i, fmt::format("it is nested more than {} levels deep", kDeepestJson)};
     if ((opens || c == ',') && ++values > most_values)
       return Excess{i, fmt::format("it has too many values; the limit is {}", most_values)};
   }

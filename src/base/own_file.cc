@@ -27,7 +27,7 @@ Status lock_for_writing(int fd, const std::filesystem::path& path) {
   return Error{ErrorKind::kUsage,
                "is being written by another recording",
                {path.string(), 0, 0},
-               "wait until that one has ended, or choose another name"};
+               "wait until it has ended, or choose another name"};
 }
 
 Status remove_unless_written(const std::filesystem::path& path) {
@@ -57,7 +57,7 @@ Status check_not_cut(int fd, const std::filesystem::path& path, uint64_t size) {
     return error_of(path, fmt::format("cannot be checked: {}", std::strerror(errno)));
   if (found.st_nlink == 0) return error_of(path, "was removed while it was being written");
   if (S_ISREG(found.st_mode) && static_cast<uint64_t>(found.st_size) < size)
-    return error_of(path, fmt::format("was cut to {} of {} bytes while it was being written",
+    return error_of(path, fmt::format("was truncated to {} of {} bytes while it was being written",
                                       found.st_size, size));
   return {};
 }

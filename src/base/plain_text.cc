@@ -104,9 +104,9 @@ Result<std::optional<std::string>> plain_text(std::string_view bytes, const std:
   } else if (text.starts_with(kLittleMark) || text.starts_with(kBigMark)) {
     if (text.size() % 2 != 0)
       return Error{ErrorKind::kInput,
-                   "is UTF-16 text with half a character at its end",
+                   "is UTF-16 text that ends with half a character",
                    {file, 0, 0},
-                   "the file may be cut off: copy it again, or save it as UTF-8"};
+                   "the file may be truncated: copy it again, or save it as UTF-8"};
     owned = from_utf16(text.substr(2), text.starts_with(kBigMark));
     text = owned;
   }

@@ -22,8 +22,7 @@ std::string decompress_zstd(std::span<const uint8_t> bytes, std::span<uint8_t> o
       ZSTD_decompressDCtx(context.get(), out.data(), out.size(), bytes.data(), bytes.size());
   if (ZSTD_isError(size) != 0) return fmt::format("zstd: {}", ZSTD_getErrorName(size));
   if (size != out.size())
-    return fmt::format("holds {} bytes after decompression, not the {} it declares", size,
-                       out.size());
+    return fmt::format("it has {} bytes after decompression, but declares {}", size, out.size());
   return {};
 }
 
@@ -47,7 +46,7 @@ std::string decompress_lz4(std::span<const uint8_t> bytes, std::span<uint8_t> ou
     if (in == 0 && made == 0) break;
   }
   if (out.empty() && bytes.empty()) return {};
-  return "lz4: the frame does not end where the chunk says";
+  return "lz4: the frame does not end at the declared size";
 }
 
 }  // namespace
@@ -77,13 +76,13 @@ std::string decompress(const std::string& compression, std::span<const uint8_t> 
                        std::span<uint8_t> out) {
   if (compression.empty()) {
     if (bytes.size() != out.size())
-      return fmt::format("holds {} bytes, not the {} it declares", bytes.size(), out.size());
+      return fmt::format("it has {} bytes, but declares {}", bytes.size(), out.size());
     if (!bytes.empty()) std::memcpy(out.data(), bytes.data(), bytes.size());
     return {};
   }
   if (compression == "zstd") return decompress_zstd(bytes, out);
   if (compression == "lz4") return decompress_lz4(bytes, out);
-  return fmt::format("is compressed with '{}', which is not known here (zstd, lz4 are)",
+  return fmt::format("unsupported compression '{}' (expected zstd or lz4)",
                      as_utf8(compression.substr(0, 40)));
 }
 

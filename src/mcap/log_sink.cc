@@ -19,7 +19,7 @@ Result<std::unique_ptr<LogSink>> FileSink::create(const std::filesystem::path& p
     return Error{ErrorKind::kIo,
                  fmt::format("cannot create the log: {}", std::strerror(cause)),
                  {path.string(), 0, 0},
-                 cause == EEXIST ? "choose another name or remove it"
+                 cause == EEXIST ? "choose another name or remove the file"
                                  : "check the folder and its permissions"};
   }
   std::unique_ptr<FileSink> sink(new FileSink(fd, path.string()));
@@ -49,7 +49,7 @@ Status FileSink::sync() {
   do status = ::fdatasync(fd_);
   while (status != 0 && errno == EINTR);
   // Pipes and some file systems have no such thing as a disk.
-  if (status != 0 && errno != EINVAL && errno != EROFS) return failure("bring the log to the disk");
+  if (status != 0 && errno != EINVAL && errno != EROFS) return failure("sync the log to the disk");
   return {};
 }
 

@@ -20,7 +20,7 @@ void McapRecordScope::put(uint64_t v, int bytes) {
 }
 
 void McapRecordScope::put_text(std::string_view text) {
-  GLOAM_CHECK(text.size() <= UINT32_MAX, "a text of a log has at most 4 GiB");
+  GLOAM_CHECK(text.size() <= UINT32_MAX, "a string in a log can have at most 4 GiB");
   put_u32(static_cast<uint32_t>(text.size()));
   out_->insert(out_->end(), text.begin(), text.end());
 }
@@ -32,7 +32,7 @@ void McapRecordScope::put_bytes(std::span<const uint8_t> bytes) {
 void McapRecordScope::put_strings(const McapStrings& strings) {
   uint64_t size = 0;
   for (const auto& [key, value] : strings) size += 8 + key.size() + value.size();
-  GLOAM_CHECK(size <= UINT32_MAX, "a map of a log has at most 4 GiB");
+  GLOAM_CHECK(size <= UINT32_MAX, "a map in a log can have at most 4 GiB");
   put_u32(static_cast<uint32_t>(size));
   for (const auto& [key, value] : strings) {
     put_text(key);

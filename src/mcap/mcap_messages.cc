@@ -108,7 +108,7 @@ Status McapMessages::open(size_t piece) {
     return mcap_error(
         *source_, from.index.offset,
         fmt::format("chunks of more than {} bytes overlap in time", limits_.open_bytes),
-        "read fewer topics or a shorter time");
+        "read fewer topics or a shorter time range");
   }
   if (open.entries.empty()) return {};  // the slot stays free
   free_.pop_back();
@@ -146,26 +146,26 @@ Status McapMessages::list_entries(const McapPiece& piece, OpenPiece* open) const
     if (cursor.op() != McapOp::kMessage) continue;
     McapMessage message;
     if (!decode(cursor.content(), &message))
-      return mcap_error(*source_, index.offset, "a chunk with a message that is too short");
+      return mcap_error(*source_, index.offset, "a chunk contains a message that is too short");
     if (!catalog_->channels.contains(message.channel)) {
       return mcap_error(
           *source_, index.offset,
-          fmt::format("a message of channel {}, which no record declares", message.channel));
+          fmt::format("a message has channel {}, which no record declares", message.channel));
     }
     const uint64_t time = message.log_time;
     if (time < index.start_time || time > index.end_time) {
       return mcap_error(*source_, index.offset,
-                        fmt::format("a chunk from {} to {} ns that holds a message of {} ns",
+                        fmt::format("a chunk from {} to {} ns contains a message at {} ns",
                                     index.start_time, index.end_time, time),
-                        "'gloam recover' writes a right index");
+                        "'gloam recover' writes a correct index");
     }
     if (time < query_.start_time || (query_.end_time && time >= *query_.end_time)) continue;
     if (channels_ && !channels_->contains(message.channel)) continue;
     open->entries.push_back({time, cursor.offset()});
   }
   if (!cursor.whole())
-    return mcap_error(*source_, index.offset, "a chunk of parts of records",
-                      "'gloam recover' keeps what is whole");
+    return mcap_error(*source_, index.offset, "a chunk contains incomplete records",
+                      "'gloam recover' keeps all undamaged data");
   std::stable_sort(open->entries.begin(), open->entries.end(),
                    [](const Entry& a, const Entry& b) { return a.time < b.time; });
   return {};

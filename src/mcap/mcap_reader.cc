@@ -33,16 +33,16 @@ Result<std::vector<uint8_t>> read_record(const LogSource& source, McapOp op, uin
                                          uint64_t length, uint64_t most) {
   if (length < kMcapRecordHead || offset > source.size() || length > source.size() - offset)
     return mcap_error(source, offset,
-                      fmt::format("a record of {} bytes is not in the log", length));
+                      fmt::format("a record of {} bytes is outside the log", length));
   if (length > most)
     return mcap_error(source, offset,
-                      fmt::format("a record of {} bytes; up to {} are read", length, most));
+                      fmt::format("a record has {} bytes; the limit is {}", length, most));
   GLOAM_TRY_STATUS(check_memory(length, "a record of " + source.name(), "free some memory"));
   std::vector<uint8_t> bytes(length);
   GLOAM_TRY_STATUS(source.read(offset, bytes));
   McapRecordCursor cursor(bytes);
   if (!cursor.next() || cursor.op() != op)
-    return mcap_error(source, offset, "there is another record than the index says");
+    return mcap_error(source, offset, "the record does not match the index");
   bytes.erase(bytes.begin(), bytes.begin() + kMcapRecordHead);
   return bytes;
 }
@@ -52,8 +52,7 @@ Result<McapAttachment> McapReader::read_attachment(const McapAttachmentIndex& in
                                             index.length, limits_.attachment_bytes));
   McapAttachment attachment;
   if (!decode(content, &attachment))
-    return mcap_error(*source_, index.offset,
-                      "an attachment that is too short or whose CRC is wrong");
+    return mcap_error(*source_, index.offset, "an attachment is too short or has a wrong CRC");
   return attachment;
 }
 
@@ -62,7 +61,7 @@ Result<McapMetadata> McapReader::read_metadata(const McapMetadataIndex& index) c
                                             limits_.definition_bytes));
   McapMetadata metadata;
   if (!decode(content, &metadata))
-    return mcap_error(*source_, index.offset, "a metadata record that is too short");
+    return mcap_error(*source_, index.offset, "a metadata record is too short");
   return metadata;
 }
 

@@ -52,7 +52,7 @@ class Salvage final : public McapVisitor {
     if (!content && content.error().kind == ErrorKind::kIo) return std::move(content).error();
     McapAttachment attachment;
     if (!content || !decode(*content, &attachment)) {
-      visit_damage(place, "an attachment that is not whole, or is too large");
+      visit_damage(place, "an attachment is incomplete or too large");
       return {};
     }
     ++found_.attachments;
@@ -97,7 +97,7 @@ class Salvage final : public McapVisitor {
       case McapOp::kMetadata: {
         McapMetadata metadata;
         if (content.size() > limits_.definition_bytes || !decode(content, &metadata)) {
-          visit_damage({op, offset, content.size()}, "a metadata record that is not whole");
+          visit_damage({op, offset, content.size()}, "a metadata record is incomplete");
           return {};
         }
         ++found_.metadata;
@@ -111,7 +111,7 @@ class Salvage final : public McapVisitor {
   Status keep_message(uint64_t offset, std::span<const uint8_t> content) {
     McapMessage message;
     if (!decode(content, &message) || message.data.size() > kMcapLargestMessage) {
-      visit_damage({McapOp::kMessage, offset, content.size()}, "a message of a wrong size");
+      visit_damage({McapOp::kMessage, offset, content.size()}, "a message has a wrong size");
       return {};
     }
     if (!declared_.contains(message.channel)) {
@@ -120,7 +120,7 @@ class Salvage final : public McapVisitor {
         ++found_.messages_lost;
         visit_damage(
             {McapOp::kMessage, offset, kMcapRecordHead + content.size()},
-            fmt::format("messages of channel {}, whose own record is lost", message.channel));
+            fmt::format("messages of channel {}, whose definition is lost", message.channel));
         return {};
       }
       GLOAM_TRY_STATUS(declare(*channel));

@@ -69,21 +69,21 @@ class Scan {
   /// One record, or damage.
   Status step() {
     const uint64_t left = source_.size() - at_;
-    if (left == 0) return stop("the log ends without its end");
-    if (left < kMcapRecordHead) return skip_to_restart("the log is cut");
+    if (left == 0) return stop("the log ends without an end record");
+    if (left < kMcapRecordHead) return skip_to_restart("the log is truncated");
     GLOAM_TRY(const auto head, window_.read(at_, kMcapRecordHead));
     McapDecoder in(head);
     McapRecordPlace place{static_cast<McapOp>(in.u8()), at_, 0};
     const uint64_t content = in.u64();
-    if (place.op == McapOp{0}) return skip_to_restart("no record begins here");
+    if (place.op == McapOp{0}) return skip_to_restart("no record starts here");
     if (content > left - kMcapRecordHead) {
-      return skip_to_restart(fmt::format("a record of {} bytes, of which {} are there", content,
-                                         left - kMcapRecordHead));
+      return skip_to_restart(fmt::format("a record has {} bytes, of which only {} are present",
+                                         content, left - kMcapRecordHead));
     }
     place.length = kMcapRecordHead + content;
     // Nothing is read twice, so the time is that of the log's size whatever restarts are claimed.
     if (next_restart(at_) < at_ + place.length)
-      return damaged(place, "a record in which a chunk begins");
+      return damaged(place, "a chunk starts within a record");
     if (place.op == McapOp::kDataEnd || place.op == McapOp::kFooter) return end_data(place);
     if (place.op == McapOp::kChunk) return chunk(place);
     return other(place);
@@ -94,7 +94,7 @@ class Scan {
         load_chunk(source_, place.offset, place.length, limits_, &buffers_);
     if (!head && head.error().kind == ErrorKind::kIo) return std::move(head).error();
     if (!head) return damaged(place, without_place(head.error().message));
-    if (!is_whole(buffers_.records)) return damaged(place, "a chunk of parts of records");
+    if (!is_whole(buffers_.records)) return damaged(place, "a chunk contains incomplete records");
     GLOAM_TRY_STATUS(visitor_->visit_chunk(place, *head, buffers_.records));
     at_ += place.length;
     return {};
@@ -115,12 +115,12 @@ class Scan {
 
   Status end_data(const McapRecordPlace& place) {
     if (place.op == McapOp::kFooter && at_ + place.length + kMcapMagic.size() != source_.size())
-      return skip_to_restart("a footer before the end");
+      return skip_to_restart("a footer is not at the end of the log");
     ended_ = true;
     result_.whole = !broken_;
     if (place.op != McapOp::kDataEnd || broken_) return {};
     if (place.length < kMcapRecordHead + 4 || place.length > kWindow)
-      return stop("a DataEnd record that is none");
+      return stop("a DataEnd record has a wrong size");
     GLOAM_TRY(const auto record, window_.read(place.offset, place.length));
     const uint32_t crc = McapDecoder(record.subspan(kMcapRecordHead)).u32();
     if (crc == 0) return {};
@@ -178,7 +178,7 @@ Result<McapHeader> read_header(const LogSource& source, uint64_t* end) {
   GLOAM_TRY_STATUS(source.read(0, bytes));
   if (bytes.size() < kMcapMagic.size() ||
       !std::equal(kMcapMagic.begin(), kMcapMagic.end(), bytes.begin()))
-    return mcap_error(source, 0, "is no MCAP log of version 0");
+    return mcap_error(source, 0, "is not an MCAP log of version 0");
   if (bytes.size() < first) return mcap_error(source, kMcapMagic.size(), "the log ends here");
   McapDecoder in(std::span<const uint8_t>(bytes).subspan(kMcapMagic.size()));
   const auto op = static_cast<McapOp>(in.u8());

@@ -23,7 +23,7 @@ Result<std::string> load_summary(const LogSource& source, const McapLimits& limi
     return std::string("the log has no footer");
   if (footer.summary_start == 0) return std::string("the log has no summary");
   if (footer.summary_start < data_begin || footer.summary_start > footer_at)
-    return std::string("the summary is not in the log");
+    return std::string("the summary is outside the log");
   if (footer_at - footer.summary_start > limits.summary_bytes)
     return std::string("the summary is too large");
   summary->resize(footer_at - footer.summary_start);
@@ -84,7 +84,7 @@ std::string find_gap(const SummaryParts& parts, uint64_t log_bytes) {
   if (catalog.pieces.size() != counts.chunks || (catalog.pieces.empty() && counts.messages > 0))
     return "the summary has no index of the chunks";
   if (catalog.channels.size() != counts.channels || catalog.schemas.size() != counts.schemas)
-    return "the summary leaves out schemas or channels";
+    return "the summary omits schemas or channels";
   if (catalog.attachments.size() != counts.attachments ||
       catalog.metadata.size() != counts.metadata)
     return "the summary has no index of the attachments or metadata";
@@ -92,10 +92,10 @@ std::string find_gap(const SummaryParts& parts, uint64_t log_bytes) {
   for (const McapPiece& piece : catalog.pieces) {
     const McapChunkIndex& index = piece.index;
     if (index.offset < end || index.offset > log_bytes || index.length > log_bytes - index.offset)
-      return "the summary has chunks that are not in the log or lie in one another";
+      return "the summary lists chunks that overlap or are outside the log";
     end = index.offset + index.length;
     for (const auto& [channel, offset] : index.message_indexes)
-      if (!catalog.channels.contains(channel)) return "the summary leaves out channels";
+      if (!catalog.channels.contains(channel)) return "the summary omits channels";
   }
   return {};
 }
@@ -105,15 +105,18 @@ std::string find_gap(const SummaryParts& parts, uint64_t log_bytes) {
 std::string add_definition(McapOp op, std::span<const uint8_t> content, const McapLimits& limits,
                            McapCatalog* catalog, uint64_t* bytes) {
   const auto add = [&]<class T>(T record, std::map<uint16_t, T>* all) -> std::string {
-    if (!decode(content, &record)) return "a schema or channel is shorter than what it declares";
+    if (!decode(content, &record)) return "a schema or channel is shorter than it declares";
     if (const auto known = all->find(record.id); known != all->end())
-      return known->second == record ? "" : "a schema or channel is declared twice, differently";
+      return known->second == record
+                 ? ""
+                 : "a schema or channel is declared twice with different contents";
     *bytes += content.size() + sizeof(T);
-    if (*bytes > limits.definition_bytes) return "too many or too large schemas and channels";
+    if (*bytes > limits.definition_bytes)
+      return "there are too many schemas and channels, or they are too large";
     all->emplace(record.id, std::move(record));
     return "";
   };
-  if (content.size() > limits.definition_bytes) return "too large a schema or channel";
+  if (content.size() > limits.definition_bytes) return "a schema or channel is too large";
   return op == McapOp::kSchema ? add(McapSchema(), &catalog->schemas)
                                : add(McapChannel(), &catalog->channels);
 }

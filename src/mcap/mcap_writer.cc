@@ -30,12 +30,11 @@ McapWriter::~McapWriter() = default;
 
 Status McapWriter::add_schema(const McapSchema& schema) {
   GLOAM_TRY_STATUS(status_);
-  if (schema.id == 0) return refused("a schema's id is not 0");
+  if (schema.id == 0) return refused("the id of a schema must not be 0");
   const auto [known, is_new] = schemas_.emplace(schema.id, schema);
   if (!is_new) {
     if (known->second == schema) return {};
-    return refused(
-        fmt::format("schema {} is there already, as '{}'", schema.id, known->second.name));
+    return refused(fmt::format("schema {} already exists as '{}'", schema.id, known->second.name));
   }
   append_record(&out_, schema);
   return out_.size() < options_.chunk_size ? Status() : hand_over();
@@ -49,7 +48,7 @@ Status McapWriter::add_channel(const McapChannel& channel) {
   if (!is_new) {
     if (known->second == channel) return {};
     return refused(
-        fmt::format("channel {} is there already, as '{}'", channel.id, known->second.topic));
+        fmt::format("channel {} already exists as '{}'", channel.id, known->second.topic));
   }
   channels_[channel.id];
   append_record(&out_, channel);
@@ -58,12 +57,12 @@ Status McapWriter::add_channel(const McapChannel& channel) {
 
 Status McapWriter::add_message(const McapMessage& message) {
   GLOAM_TRY_STATUS(status_);
-  GLOAM_CHECK(!finished_, "a message after the end of the log");
+  GLOAM_CHECK(!finished_, "a message was added after the end of the log");
   const auto found = channels_.find(message.channel);
   if (found == channels_.end())
-    return refused(fmt::format("a message of the unknown channel {}", message.channel));
+    return refused(fmt::format("a message has the unknown channel {}", message.channel));
   if (message.data.size() > kMcapLargestMessage) {
-    return refused(fmt::format("a message of {} bytes; a log takes up to {}", message.data.size(),
+    return refused(fmt::format("a message has {} bytes; the limit is {}", message.data.size(),
                                kMcapLargestMessage));
   }
   const uint64_t size = kMcapRecordHead + kMcapMessageHead + message.data.size();
@@ -87,8 +86,8 @@ Status McapWriter::add_message(const McapMessage& message) {
 Status McapWriter::add_attachment(const McapAttachment& attachment) {
   GLOAM_TRY_STATUS(status_);
   if (attachment.data.size() > kMcapLargestAttachment) {
-    return refused(fmt::format("attachment '{}' has {} bytes; a log takes up to {}",
-                               attachment.name, attachment.data.size(), kMcapLargestAttachment));
+    return refused(fmt::format("attachment '{}' has {} bytes; the limit is {}", attachment.name,
+                               attachment.data.size(), kMcapLargestAttachment));
   }
   const uint64_t begin = end();
   append_record(&out_, attachment);
@@ -121,7 +120,7 @@ Status McapWriter::flush() {
 }
 
 Status McapWriter::finish() {
-  GLOAM_CHECK(!finished_, "a log ends once");
+  GLOAM_CHECK(!finished_, "a log can be finished only once");
   finished_ = true;
   GLOAM_TRY_STATUS(flush());
   append_data_end(&out_, crc_);
@@ -183,8 +182,8 @@ void McapWriter::add_to_crc() {
 }
 
 Status McapWriter::fail(Error error) {
-  error.message += fmt::format("; its first {} bytes are safe", safe_);
-  if (error.hint.empty()) error.hint = "'gloam recover' makes a whole log of them";
+  error.message += fmt::format("; the first {} bytes of the log are safe", safe_);
+  if (error.hint.empty()) error.hint = "'gloam recover' turns them into a complete log";
   status_ = std::move(error);
   (void)sink_->close().ok();
   return status_;

@@ -189,14 +189,14 @@ std::vector<double> doubles(nb::handle numbers) {
   if (nb::try_cast(numbers, list)) return list;
   double one;
   if (nb::try_cast(numbers, one)) return {one};
-  throw nb::type_error("numbers are expected: an array, a list or a number");
+  throw nb::type_error("expected numbers: an array, a list or a number");
 }
 
 std::vector<double> doubles(nb::handle numbers, size_t count, const char* what) {
   std::vector<double> list = doubles(numbers);
   if (list.size() != count) {
-    const std::string text = std::string(what) + ": " + std::to_string(list.size()) +
-                             " numbers are given, " + std::to_string(count) + " are expected";
+    const std::string text = std::string(what) + ": expected " + std::to_string(count) +
+                             " numbers, got " + std::to_string(list.size());
     throw nb::value_error(text.c_str());
   }
   return list;

@@ -69,7 +69,7 @@ void bind_frame(nb::module_& m) {
   const auto of = [](auto member) {
     return [member](const Frame& frame) { return (*frame.data).*member; };
   };
-  nb::class_<Frame>(m, "Frame", "One frame of one camera; every channel is of the same rays.")
+  nb::class_<Frame>(m, "Frame", "One frame of one camera; all channels use the same rays.")
       .def_prop_ro("camera", of(&C::camera))
       .def_prop_ro("index", of(&C::index))
       .def_prop_ro("step", of(&C::step))
@@ -141,7 +141,7 @@ void bind_scan(nb::module_& m) {
   const auto of = [](auto member) {
     return [member](const Scan& scan) { return (*scan.data).*member; };
   };
-  nb::class_<Scan>(m, "Scan", "One scan of a LiDAR, returns in the order of firing.")
+  nb::class_<Scan>(m, "Scan", "One scan of a LiDAR, with returns in firing order.")
       .def_prop_ro("lidar", of(&L::lidar))
       .def_prop_ro("index", of(&L::index))
       .def_prop_ro("step", of(&L::step))

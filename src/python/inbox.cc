@@ -8,8 +8,8 @@ void Inbox::close() {
   if (!try_close())
     raise("StuckError",
           "the callback of " + name_ + " has not returned within " +
-              std::to_string(kPatience.count()) + " s: its stream is left behind",
-          "callbacks have to return; give long work to a thread of your own");
+              std::to_string(kPatience.count()) + " s: its stream is abandoned",
+          "callbacks must return; do long work in a thread of your own");
 }
 
 bool Inbox::is_stuck() const {

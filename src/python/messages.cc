@@ -93,7 +93,7 @@ void encode_field(const MessageSchema& schema, const SchemaField& field, nb::han
   const size_t bound = field.type.array_size;
   if (field.type.array == ArrayKind::kFixed) {
     if (count != bound) {
-      const std::string text = field.name + ": " + std::to_string(bound) + " elements are expected";
+      const std::string text = field.name + ": expected " + std::to_string(bound) + " elements";
       throw nb::value_error(text.c_str());
     }
     for (size_t i = 0; i < bound; ++i) encode_element(schema, field, from[i], writer);
@@ -106,7 +106,8 @@ void encode_field(const MessageSchema& schema, const SchemaField& field, nb::han
 void encode_message(const MessageSchema& schema, size_t part, nb::handle from, CdrWriter& writer) {
   const auto& fields = schema.fields(part);
   if (fields.empty()) writer.write(uint8_t{0});
-  if (!nb::isinstance<nb::dict>(from)) throw nb::type_error("a message is a dict of its fields");
+  if (!nb::isinstance<nb::dict>(from))
+    throw nb::type_error("a message must be a dict of its fields");
   const auto given = nb::borrow<nb::dict>(from);
   std::vector<std::string> names;
   for (const SchemaField& field : fields) names.push_back(field.name);

@@ -51,10 +51,10 @@ bool differs(const void* a, const void* b, size_t bytes) { return std::memcmp(a,
 
 Error cannot_change(const std::string& name) {
   return {ErrorKind::kUsage,
-          "sim.model." + name + " was written, which cannot change while the simulation runs",
+          "sim.model." + name + " cannot be changed while the simulation runs",
           {},
-          "arrays of live fields can: sim.model.body_mass, geom_friction, actuator_gainprm, "
-          "dof_damping …; for others change the scene and recompile()"};
+          "arrays of live fields can be changed: sim.model.body_mass, geom_friction, "
+          "actuator_gainprm, dof_damping …; for other arrays, change the scene and recompile()"};
 }
 
 }  // namespace

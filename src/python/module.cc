@@ -6,10 +6,11 @@
 NB_MODULE(_core, m) {
   using namespace gloam::python;
   nb::set_leak_warnings(false);  // programs end with simulations in their global variables
-  m.doc() = "Gloam's C++ API; use the package gloam, which is made on it.";
+  m.doc() = "Bindings of Gloam's C++ API; use the package gloam, which is built on them.";
   m.def("version", &gloam::version, "Version of the library, \"0.1.0\".");
   m.def("configuration", &gloam::configuration,
-        "Compiler, instruction set, build type and libraries: what determinism is relative to.");
+        "Compiler, instruction set, build type and libraries; results are identical for equal "
+        "configurations.");
   m.def("home", [] { return take(gloam::gloam_home()); }, "Folder that holds assets/.");
   m.def("suggest_name", [](const std::string& word, const std::vector<std::string>& candidates) {
     return gloam::suggest_name(word, candidates);

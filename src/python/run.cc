@@ -27,7 +27,7 @@ bool Run::end() {
   try {
     close();
   } catch (nb::python_error& error) {
-    error.discard_as_unraisable("the end of a gloam.Simulation");
+    error.discard_as_unraisable("closing a gloam.Simulation");
   }
   return simulation_ == nullptr;
 }
@@ -36,7 +36,7 @@ Simulation& Run::simulation() {
   if (is_closed_) raise("ClosedError", "the simulation is closed");
   if (getpid() != process_)
     raise("ForkedError", "the simulation belongs to the process that this one was forked from",
-          "make it in the new process, or start processes by 'spawn'");
+          "create it in the new process, or start processes with 'spawn'");
   return *simulation_;
 }
 
@@ -59,8 +59,8 @@ void Run::leave_behind(const std::string& what) {
   is_closed_ = true;
   raise("StuckError",
         what + " has not returned within " + std::to_string(kPatience.count()) +
-            " s: its thread and the simulation's memory are left behind",
-        "callbacks and hooks have to return; give long work to a thread of your own");
+            " s: its thread and the simulation's memory are abandoned",
+        "callbacks and hooks must return; do long work in a thread of your own");
 }
 
 void Run::close() {
@@ -132,8 +132,8 @@ void Run::give_written() {
   for (const double value : written_.value) {
     if (std::isfinite(value)) continue;
     written_ = {};
-    raise("InputError", "a number that is not finite was written into the state",
-          "the state is as it was before");
+    raise("InputError", "a number that is not finite was written to the state",
+          "the state is unchanged");
   }
   has_written_.store(true, std::memory_order_release);
 }
@@ -236,7 +236,7 @@ Snapshot Run::latest() {
 }
 
 void Run::step(int64_t n) {
-  if (n < 0) raise("UsageError", "a number of steps is not negative");
+  if (n < 0) raise("UsageError", "the number of steps must not be negative");
   if (n == 0) return;
   guarded_call([&] { return without_gil([&] { return simulation_->step(n); }); });
 }
@@ -333,10 +333,10 @@ int64_t Run::generation() {
 nb::object Run::step_until(Inbox& inbox) {
   simulation();
   if (!simulation_->paused())
-    raise("UsageError", "the simulation runs", "pause() it before step_until()");
+    raise("UsageError", "the simulation is running", "pause() it before step_until()");
   Stream& stream = inbox.stream();
   if (stream.complete_at(0) < 0)
-    raise("UsageError", "a stream of topics has no one next message", "iterate over it");
+    raise("UsageError", "a topic stream has no single next message", "iterate over it");
   const Rational rate = simulation_->step_rate();
   int64_t from = inbox.next_from();
   int64_t complete = stream.complete_at(from);

@@ -228,7 +228,7 @@ void bind_view(nb::module_& m) {
 void bind_simulation(nb::module_& m) {
   bind_memory(m);
   bind_solver(m);
-  nb::class_<Checkpoint>(m, "Checkpoint", "An instant to go back to.")
+  nb::class_<Checkpoint>(m, "Checkpoint", "An instant to which a simulation can be restored.")
       .def_prop_ro("step", &Checkpoint::step)
       .def_prop_ro("time", &Checkpoint::time)
       .def_prop_ro("seed", &Checkpoint::seed)
@@ -254,7 +254,7 @@ void bind_simulation(nb::module_& m) {
       .def("set_hook", &Run::set_hook, nb::arg("hook").none())
       .def("set_pace",
            [](Run& r, const std::string& pace, double speed) {
-             if (!(speed > 0)) raise("UsageError", "a speed is above 0");
+             if (!(speed > 0)) raise("UsageError", "speed must be positive");
              const Pace wanted = take(pace_named(pace));
              Simulation& simulation = r.simulation();
              without_gil([&] { simulation.set_pace(wanted, speed); });

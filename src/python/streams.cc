@@ -19,7 +19,7 @@ std::shared_ptr<Inbox> make_inbox(Run& run, std::string name, nb::object callbac
       try {
         if (inbox->try_close()) delete inbox;
       } catch (nb::python_error& error) {
-        error.discard_as_unraisable("the end of a stream");
+        error.discard_as_unraisable("closing a stream");
       }
     });
   };
@@ -96,7 +96,7 @@ std::shared_ptr<Inbox> open_topics(Run& run, const std::vector<std::string>& top
 
 CameraStream& camera_stream(Inbox& inbox) {
   auto* camera = dynamic_cast<CameraStream*>(&inbox.stream());
-  if (camera == nullptr) raise("UsageError", "this is no camera's stream");
+  if (camera == nullptr) raise("UsageError", "this is not a camera stream");
   return *camera;
 }
 
@@ -138,7 +138,7 @@ CameraRequest camera_request(const nb::dict& options) {
   nb::object X_WC = nb::none();
   keywords.read("pose", &X_WC);
   keywords.refuse_others();
-  if (!(rate >= 0 && rate < 1e6)) raise("UsageError", "a rate is not in 0 … 1e6 Hz");
+  if (!(rate >= 0 && rate < 1e6)) raise("UsageError", "rate must be at least 0 and below 1e6 Hz");
   request.rate = rational(rate);
   if (!X_WC.is_none()) request.X_WC = pose(X_WC);
   return request;

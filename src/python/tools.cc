@@ -55,7 +55,7 @@ nb::dict check_file(const std::filesystem::path& file, const std::filesystem::pa
 Trajectory trajectory_of(nb::handle times, nb::handle poses, const std::string& name) {
   const std::vector<double> t = doubles(times), x = doubles(poses);
   if (x.size() != 7 * t.size())
-    throw nb::value_error("poses are (n, 7): x, y, z, qw, qx, qy, qz, for n times");
+    throw nb::value_error("poses must have the shape (n, 7): x, y, z, qw, qx, qy, qz, for n times");
   std::vector<StampedPose> list;
   for (size_t i = 0; i < t.size(); ++i) {
     const double* p = x.data() + 7 * i;

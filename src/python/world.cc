@@ -147,7 +147,7 @@ void bind_world(nb::module_& m) {
   bind_handle<Geom>(m, "GeomHandle");
   bind_handle<Tendon>(m, "TendonHandle");
   bind_handle<Robot>(m, "RobotHandle");
-  nb::class_<World>(m, "World", "What a Scene compiles to; never changes.")
+  nb::class_<World>(m, "World", "A compiled Scene; it never changes.")
       .def_static(
           "compile",
           [](const Scene& scene, nb::object progress, const std::string& keyframe) {

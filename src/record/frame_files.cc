@@ -43,7 +43,7 @@ Result<Bytes> ids(const CameraFrame& frame, const std::vector<uint32_t>& values)
   if (frame.part_count <= kMost16) return png16(frame, {values.begin(), values.end()});
   if (frame.part_count > kMost24)
     return Error{ErrorKind::kUsage,
-                 fmt::format("the scene of camera '{}' has {} parts; pictures number {} at most",
+                 fmt::format("the scene of camera '{}' has {} parts; images can number at most {}",
                              frame.camera, frame.part_count, kMost24),
                  {},
                  "read CameraFrame::part instead"};
@@ -90,7 +90,7 @@ Result<Bytes> encode_frame_file(const CameraFile& file, const CameraFrame& frame
     case FileFormat::kCsv:
       break;
   }
-  GLOAM_CHECK(false, "a file of all frames is not made of one");
+  GLOAM_CHECK(false, "a file of all frames cannot be made from one frame");
   return Bytes{};
 }
 

@@ -21,7 +21,7 @@ const Format& format_of(const std::string& name) {
   for (const Format& format : kFormats) {
     if (format.name == name) return format;
   }
-  GLOAM_CHECK(false, "the formats of a recorded LiDAR are checked");
+  GLOAM_CHECK(false, "a recorded LiDAR has an unknown file format");
   return kFormats[0];
 }
 

@@ -66,7 +66,7 @@ class Lanes {
   template <class Item>
   void add(const std::string& name, std::shared_ptr<const Item> item, FirstFailure* failure) {
     const auto lane = lanes_.find(name);
-    GLOAM_CHECK(lane != lanes_.end(), "a frame or scan of what is not recorded");
+    GLOAM_CHECK(lane != lanes_.end(), "a frame or scan of a sensor that is not recorded");
     if (failure->failed()) return;
     lane->second->worker.post(
         [failure, recorder = &lane->second->recorder, item = std::move(item)] {

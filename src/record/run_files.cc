@@ -128,17 +128,17 @@ std::string cameras_json(const std::vector<RecordedCamera>& cameras,
   Json out;
   out["conventions"] = {
       {"pixels",
-       "fx, fy, cx, cy from the top left corner of the picture, pixel centres at integer "
-       "+ 0.5; camera_info.k as in ROS and OpenCV, pixel centres at integers"},
+       "fx, fy, cx, cy from the top left corner of the image, pixel centres at integer + 0.5; "
+       "camera_info.k as in ROS and OpenCV, pixel centres at integers"},
       {"poses",
-       "poses.csv: of frame_id in the world; Z forward, X right, Y down; metres; "
-       "quaternion w first"},
+       "poses.csv: pose of frame_id in the world; Z forward, X right, Y down; metres; quaternion w "
+       "first"},
       {"depth",
-       "along Z of frame_id, of equidistant and equirectangular cameras along the ray; depth/*.png "
-       "16-bit millimetres, 0 = nothing or beyond "
-       "65.535 m; depth_exr/*.exr channel Z, float metres, inf = nothing"},
+       "along Z of frame_id, for equidistant and equirectangular cameras along the ray; "
+       "depth/*.png 16-bit millimetres, 0 = nothing or beyond 65.535 m; depth_exr/*.exr channel Z, "
+       "float metres, inf = nothing"},
       {"motion",
-       "motion/*.exr pixels since the frame before; scene_flow/*.exr metres, world axes"}};
+       "motion/*.exr pixels since the previous frame; scene_flow/*.exr metres, world axes"}};
   out["cameras"] = list;
   return dump(out);
 }

@@ -26,7 +26,7 @@ Status remove_recording(const fs::path& folder) {
   if (!summary.is_object() || summary.value("format", nlohmann::json()) != "gloam-run 1" ||
       entries == summary.end() || !entries->is_array())
     return folder_error(folder, ErrorKind::kUsage,
-                        fmt::format("holds a {} that Gloam did not write", kSummaryName),
+                        fmt::format("contains a {} that Gloam did not write", kSummaryName),
                         "choose another folder with --out");
   for (const nlohmann::json& entry : *entries) {
     if (!entry.is_string()) continue;
@@ -58,7 +58,7 @@ Status prepare_run_folder(const fs::path& folder, bool overwrite) {
   if (recording && overwrite) return remove_recording(folder);
   return folder_error(
       folder, ErrorKind::kUsage,
-      recording ? "already holds a recording" : "is not empty and holds no recording of Gloam's",
+      recording ? "already contains a recording" : "is not empty and contains no Gloam recording",
       recording ? "choose another folder with --out, or replace it with --overwrite"
                 : "choose another folder with --out");
 }

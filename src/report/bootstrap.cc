@@ -21,7 +21,7 @@ double percentile(const std::vector<double>& sorted, double fraction) {
 }  // namespace
 
 MeanInterval bootstrap_mean(std::span<const double> values, const std::string& name) {
-  GLOAM_CHECK(!values.empty(), "a mean of nothing");
+  GLOAM_CHECK(!values.empty(), "the mean of no values");
   const auto n = static_cast<double>(values.size());
   MeanInterval out;
   out.count = values.size();

@@ -60,7 +60,7 @@ class CsvRows {
     for (;;) {
       const size_t end = text_.find('"');
       if (end == std::string_view::npos)
-        return Error{ErrorKind::kInput, "a quote has no end", {name_, line_, 0}};
+        return Error{ErrorKind::kInput, "a quoted field is not closed", {name_, line_, 0}};
       for (const char c : text_.substr(0, end)) next_line_ += c == '\n' ? 1 : 0;
       field->append(text_.substr(0, end));
       text_.remove_prefix(end + 1);
@@ -69,7 +69,7 @@ class CsvRows {
       text_.remove_prefix(1);
     }
     if (!text_.empty() && text_.find_first_of(",\r\n") != 0)
-      return Error{ErrorKind::kInput, "text behind the end of a quote", {name_, line_, 0}};
+      return Error{ErrorKind::kInput, "text after the end of a quoted field", {name_, line_, 0}};
     return {};
   }
 
@@ -104,7 +104,7 @@ Result<MetricTable> parse_metric_table(std::string_view text, const std::string&
   for (const std::string& column : table.columns)
     if (!names.insert(column).second)
       return Error{ErrorKind::kInput,
-                   fmt::format("two columns are called '{}'", as_utf8(column)),
+                   fmt::format("two columns are named '{}'", as_utf8(column)),
                    {name, 1, 0}};
   table.values.resize(table.columns.size());
   std::vector<std::string> fields;
@@ -117,7 +117,7 @@ Result<MetricTable> parse_metric_table(std::string_view text, const std::string&
     if (fields.size() != table.columns.size())
       return Error{
           ErrorKind::kInput,
-          fmt::format("a row of {} fields under {} columns", fields.size(), table.columns.size()),
+          fmt::format("a row has {} fields for {} columns", fields.size(), table.columns.size()),
           {name, rows.line(), 0}};
     if ((table.rows() + 1) * fields.size() > kMostCells)
       return Error{ErrorKind::kUnsupported, "more than 50 million cells", {name, 0, 0}};

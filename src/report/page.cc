@@ -76,14 +76,12 @@ std::string header_section(const ReportContent& content) {
     std::string names;
     for (const size_t i : motion.runs)
       names += (names.empty() ? "" : ", ") + html_text(content.runs[i].label);
-    const std::string proof =
-        motion.label.empty()
-            ? "their robots are at the same places at all times"
-            : "they end in the same state (hash <code>" + html_text(motion.label) + "</code>)";
+    const std::string proof = motion.label.empty() ? "their robots have the same poses at all times"
+                                                   : "they end in the same state (hash <code>" +
+                                                         html_text(motion.label) + "</code>)";
     out += fmt::format(
-        "<p class=\"note\"><b>One motion:</b> {}: {}. What differs is what was seen and measured "
-        "of "
-        "it.</p>",
+        "<p class=\"note\"><b>One motion:</b> {}: {}. They differ only in sensor data and "
+        "measurements.</p>",
         names, proof);
   }
   return out;
@@ -91,7 +89,7 @@ std::string header_section(const ReportContent& content) {
 
 std::string left_out_section(const ReportContent& content) {
   if (content.left_out.empty()) return {};
-  std::string out = "<h2>Left out</h2><ul>";
+  std::string out = "<h2>Omitted</h2><ul>";
   for (const Error& error : content.left_out)
     out += "<li>" + html_text(error.to_string()) + "</li>";
   return out + "</ul>";
@@ -111,9 +109,9 @@ std::string report_page(const ReportContent& content) {
         ground_section, curves_section, runs_section, left_out_section})
     out += section(content) + "\n";
   out += fmt::format(
-      "<p class=\"soft\">Made by gloam report, version {}. This file is whole: it loads "
-      "nothing.</p>"
-      "<dialog><img alt=\"\"><p></p></dialog><script>{}</script></body></html>\n",
+      "<p class=\"soft\">Created by gloam report, version {}. This file is "
+      "self-contained.</p><dialog><img "
+      "alt=\"\"><p></p></dialog><script>{}</script></body></html>\n",
       html_text(version()), kScript);
   return out;
 }

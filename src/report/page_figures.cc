@@ -172,7 +172,7 @@ std::string curves_section(const ReportContent& content) {
     out += "<p class=\"soft\">Dotted: commanded.</p>";
   out += "<div class=\"charts\">" + charts + "</div>";
   if (!constants.empty())
-    out += "<p class=\"soft\">The same at all times in all runs: " + constants + ".</p>";
+    out += "<p class=\"soft\">Constant and equal in all runs: " + constants + ".</p>";
   if (beyond > 0)
     out += fmt::format("<p class=\"note\">{} more columns are in metrics.csv.</p>", beyond);
   return out;

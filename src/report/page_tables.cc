@@ -88,8 +88,8 @@ std::string repetition_note(const ReportContent& content) {
     }
     if (different < group.runs.size())
       out += fmt::format(
-          "<p class=\"note\">{}: {} runs have {} different motion{}; repetitions of one motion "
-          "make an interval look narrower than it is.</p>",
+          "<p class=\"note\">{}: {} runs have {} different motion{}; repetitions of the same "
+          "motion make an interval look narrower than it is.</p>",
           html_text(group.label), group.runs.size(), different, different == 1 ? "" : "s");
   }
   return out;
@@ -121,11 +121,12 @@ std::string results_section(const ReportContent& content) {
     any_best = any_best || !std::isnan(best);
   }
   out += "</table></div>";
-  if (!are_as_long) out += "<p class=\"note\">The runs are not as long: none is marked.</p>";
+  if (!are_as_long)
+    out += "<p class=\"note\">The runs have different durations: no best value is marked.</p>";
   if (any_best)
     out +=
-        "<p class=\"soft\">Marked: the best, where less (errors, falls, collisions) or more "
-        "(success) is known to be better.</p>";
+        "<p class=\"soft\">Marked: the best value, if a smaller value (errors, falls, collisions) "
+        "or a larger value (success) is known to be better.</p>";
   return out;
 }
 
@@ -146,10 +147,10 @@ std::string groups_section(const ReportContent& content) {
     out += "</tr>";
   }
   return out +
-         "</table></div><p class=\"soft\">Mean and its 95 % interval: percentile bootstrap "
-         "over runs, 10,000 draws (Efron and Tibshirani 1993). Of fewer than about five runs "
-         "an interval is a hint, not a promise. Runs of one scene and settings, from folders "
-         "that differ in the number at the end of their names, are repetitions.</p>" +
+         "</table></div><p class=\"soft\">Mean and its 95 % interval: percentile bootstrap over "
+         "runs, 10,000 draws (Efron and Tibshirani 1993). With fewer than about five runs, the "
+         "interval is only a rough estimate. Runs of one scene with the same settings are "
+         "repetitions if the names of their folders differ only in the number at the end.</p>" +
          repetition_note(content);
 }
 

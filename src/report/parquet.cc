@@ -75,7 +75,7 @@ class ThriftWriter {
  private:
   void head(int field, Type type) {
     const int step = field - last_.back();
-    GLOAM_CHECK(step >= 1 && step <= 15, "fields rise in small steps");
+    GLOAM_CHECK(step >= 1 && step <= 15, "field numbers must rise by 1 to 15");
     bytes.push_back(static_cast<uint8_t>(step << 4 | type));
     last_.back() = field;
   }
@@ -191,7 +191,8 @@ Status ParquetWriter::append(const std::vector<ParquetColumn>& columns) {
   group.rows = columns[0].present.size();
   ZstdCompressor zstd(kZstdLevel);
   for (const ParquetColumn& column : columns) {
-    GLOAM_CHECK(column.present.size() == group.rows, "columns have as many rows");
+    GLOAM_CHECK(column.present.size() == group.rows,
+                "all columns must have the same number of rows");
     const std::vector<uint8_t> page = page_of(column);
     std::vector<uint8_t> packed;
     const size_t most = page.size() + page.size() / 128 + 1024;  // what zstd may need at worst

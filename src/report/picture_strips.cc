@@ -44,7 +44,7 @@ class CameraPictures {
     if (video_) return video_->decode(index);
     GLOAM_TRY(Image8 image, read_image(folder_ / fmt::format("{:06}.png", frames_[index])));
     if (image.channels != 3)
-      return Error{ErrorKind::kInput, "is no RGB picture", {folder_.string(), 0, 0}};
+      return Error{ErrorKind::kInput, "is not an RGB image", {folder_.string(), 0, 0}};
     return image;
   }
 
@@ -209,9 +209,9 @@ std::vector<PictureStrip> make_strips(const std::vector<RunResults>& runs,
     strips.push_back(std::move(strip));
   }
   if (dropped > 0)
-    left_out->push_back(
-        {ErrorKind::kPartial, fmt::format("{} pictures are left out: all together may have {} MiB",
-                                          dropped, request.picture_bytes >> 20)});
+    left_out->push_back({ErrorKind::kPartial,
+                         fmt::format("{} images are omitted: together they may have at most {} MiB",
+                                     dropped, request.picture_bytes >> 20)});
   return strips;
 }
 

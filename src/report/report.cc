@@ -28,9 +28,9 @@ Result<ReportOutcome> write_report(const ReportRequest& request) {
   std::error_code code;
   if (fs::exists(request.out, code) && !request.overwrite)
     return Error{ErrorKind::kUsage,
-                 "there is a file of this name already",
+                 "already exists",
                  {request.out.string(), 0, 0},
-                 "choose another with -o, or replace it with --overwrite"};
+                 "choose another file with -o, or replace it with --overwrite"};
   if (request.runs.size() > kMostRuns)
     return Error{ErrorKind::kUsage, fmt::format("more than {} runs in one report", kMostRuns)};
   ReportContent content;
@@ -42,7 +42,7 @@ Result<ReportOutcome> write_report(const ReportRequest& request) {
       content.left_out.push_back(run.error());
   }
   if (content.runs.empty())
-    return content.left_out.empty() ? Error{ErrorKind::kUsage, "no run is named"}
+    return content.left_out.empty() ? Error{ErrorKind::kUsage, "no runs given"}
                                     : content.left_out.front();
   label_runs(&content.runs);
   content.title = request.title.empty() ? title_of(content.runs) : request.title;

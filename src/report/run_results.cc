@@ -121,13 +121,14 @@ Result<RunResults> read_run_results(const fs::path& folder, std::vector<Error>* 
   std::error_code code;
   if (!fs::is_directory(folder, code))
     return Error{ErrorKind::kInput,
-                 "is no results folder",
+                 "is not a results folder",
                  {folder.string(), 0, 0},
-                 "gloam run FILE --out FOLDER makes one; of a log: gloam replay LOG --out FOLDER"};
+                 "create one with gloam run FILE --out FOLDER or, from a log, gloam replay LOG "
+                 "--out FOLDER"};
   GLOAM_TRY(const std::string text, read_text_file(summary, kMostSummaryBytes));
   const Json json = parse_bounded<Json>(text);
   if (!json.is_object() || !text_of(json, "format").starts_with("gloam-run "))
-    return Error{ErrorKind::kInput, "is no summary of a run of Gloam's", {summary.string(), 0, 0}};
+    return Error{ErrorKind::kInput, "is not the summary of a Gloam run", {summary.string(), 0, 0}};
   RunResults run;
   run.folder = folder;
   run.title = text_of(json, "title");

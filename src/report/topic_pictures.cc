@@ -61,13 +61,13 @@ Result<TopicPicture> raw_picture(const DynamicMessage& message) {
                                     [&](const PixelLayout& l) { return encoding == l.encoding; });
   if (layout == std::end(kLayouts))
     return Error{ErrorKind::kUnsupported,
-                 fmt::format("pictures of encoding '{}' are not known", as_utf8(encoding))};
+                 fmt::format("unsupported image encoding '{}'", as_utf8(encoding))};
   if (width < 1 || height < 1 || width > 65535 || height > 65535 || step < width * layout->bytes ||
       step > std::numeric_limits<uint32_t>::max() ||
       static_cast<uint64_t>(step * height) > data.size())
     return Error{ErrorKind::kInput,
-                 fmt::format("a picture of {} x {} has {} bytes a row and {} in all", width, height,
-                             step, data.size())};
+                 fmt::format("an image of {} x {} pixels has {} bytes per row and {} in total",
+                             width, height, step, data.size())};
   TopicPicture out;
   out.width = static_cast<int>(width);
   out.height = static_cast<int>(height);
@@ -87,11 +87,11 @@ Result<TopicPicture> compressed_picture(const DynamicMessage& message) {
   GLOAM_TRY(const auto data, message.bytes("data"));
   const bool is_png = data.size() > 4 && data[1] == 'P' && data[2] == 'N' && data[3] == 'G';
   TopicPicture out;
-  GLOAM_TRY(out.image, is_png ? decode_png(data, "a picture") : decode_jpeg(data, "a picture"));
+  GLOAM_TRY(out.image, is_png ? decode_png(data, "an image") : decode_jpeg(data, "an image"));
   out.width = out.image.width;
   out.height = out.image.height;
   if (out.image.channels % 2 == 0)
-    return Error{ErrorKind::kUnsupported, "pictures with transparency are not known"};
+    return Error{ErrorKind::kUnsupported, "images with transparency are not supported"};
   return out;
 }
 
@@ -107,8 +107,9 @@ struct PictureTopic {
     const std::string type = topic.schema.name();
     const bool is_compressed = type == "sensor_msgs/msg/CompressedImage";
     if (!is_compressed && type != "sensor_msgs/msg/Image")
-      return Error{ErrorKind::kUnsupported,
-                   fmt::format("topic '{}' is {}, no pictures", name, as_utf8(type))};
+      return Error{
+          ErrorKind::kUnsupported,
+          fmt::format("topic '{}' has the type {} and contains no images", name, as_utf8(type))};
     return PictureTopic{std::move(reader), std::move(topic), is_compressed};
   }
   Status for_each(const std::function<Status(const TopicPicture&)>& f) const {
@@ -167,7 +168,8 @@ Result<int64_t> write_topic_pictures(const std::filesystem::path& log, const std
   GLOAM_TRY(const PictureTopic pictures, PictureTopic::open(log, topic));
   std::error_code code;
   if (std::filesystem::exists(folder, code) && !std::filesystem::is_empty(folder, code))
-    return Error{ErrorKind::kUsage, "is there already", {folder.string(), 0, 0}, "choose another"};
+    return Error{
+        ErrorKind::kUsage, "already exists", {folder.string(), 0, 0}, "choose another folder"};
   GLOAM_TRY_STATUS(make_folder(folder));
   int64_t count = 0;
   std::string stamps = "file,stamp_ns\n";
@@ -191,7 +193,7 @@ Result<int64_t> write_topic_video(const std::filesystem::path& log, const std::s
     return {};
   }));
   if (stamps.empty())
-    return Error{ErrorKind::kInput, fmt::format("topic '{}' has no picture", topic)};
+    return Error{ErrorKind::kInput, fmt::format("topic '{}' contains no images", topic)};
   const Rational rate = rate_of(stamps);
   std::optional<VideoWriter> video;
   VideoOptions options{.rate = rate};
@@ -206,7 +208,7 @@ Result<int64_t> write_topic_video(const std::filesystem::path& log, const std::s
       GLOAM_TRY(video, VideoWriter::start(std::move(sink), options));
     }
     if (picture.width != options.width || picture.height != options.height)
-      return Error{ErrorKind::kUnsupported, "pictures of a video have one size"};
+      return Error{ErrorKind::kUnsupported, "all images of a video must have the same size"};
     const double time = 1e-9 * static_cast<double>(picture.stamp - stamps[0]);
     const double at = std::clamp(time * rate.value(), -1e9, 1e9);
     last = std::max<int64_t>(last + 1, std::llround(at));

@@ -24,7 +24,7 @@ using Decoder = std::unique_ptr<ISVCDecoder, DecoderDeleter>;
 Result<Decoder> make_decoder() {
   ISVCDecoder* made = nullptr;
   if (WelsCreateDecoder(&made) != 0 || made == nullptr)
-    return Error{ErrorKind::kIo, "the H.264 decoder cannot be made"};
+    return Error{ErrorKind::kIo, "cannot create the H.264 decoder"};
   Decoder decoder(made);
   int silent = WELS_LOG_QUIET;
   decoder->SetOption(DECODER_OPTION_TRACE_LEVEL, &silent);
@@ -32,7 +32,7 @@ Result<Decoder> make_decoder() {
   parameters.eEcActiveIdc = ERROR_CON_DISABLE;
   parameters.sVideoProperty.eVideoBsType = VIDEO_BITSTREAM_AVC;
   if (decoder->Initialize(&parameters) != 0)
-    return Error{ErrorKind::kIo, "the H.264 decoder does not start"};
+    return Error{ErrorKind::kIo, "cannot start the H.264 decoder"};
   return decoder;
 }
 
@@ -95,7 +95,7 @@ Result<VideoReader> VideoReader::open(const std::filesystem::path& file) {
 
 Result<Image8> VideoReader::decode(size_t wanted) const {
   const Error failed{
-      ErrorKind::kInput, fmt::format("picture {} cannot be decoded", wanted + 1), {name_, 0, 0}};
+      ErrorKind::kInput, fmt::format("frame {} cannot be decoded", wanted + 1), {name_, 0, 0}};
   if (wanted >= index_.samples.size()) return failed;
   size_t first = wanted;
   while (first > 0 && !index_.samples[first].key) --first;

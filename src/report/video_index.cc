@@ -121,18 +121,18 @@ Result<VideoIndex> index_video(ByteSpan file, const std::string& name) {
   const ByteSpan media = box_at(file, {"moov", "trak", "mdia"}).content;
   const ByteSpan stbl = box_at(media, {"minf", "stbl"}).content;
   const ByteSpan mdhd = box_at(media, {"mdhd"}).content;
-  if (stbl.empty() || mdhd.empty()) return damaged("is no MP4 with a video track");
+  if (stbl.empty() || mdhd.empty()) return damaged("is not an MP4 file with a video track");
   const double timescale = static_cast<double>(big_endian(mdhd, mdhd[0] == 1 ? 20 : 12, 4));
-  if (timescale < 1) return damaged("has no scale of time");
+  if (timescale < 1) return damaged("has no time scale");
   VideoIndex out;
   take_parameter_sets(box_at(stbl, {"stsd"}).content, &out);
-  if (out.sps.empty() || out.pps.empty()) return damaged("is no H.264 with lengths of 4 bytes");
+  if (out.sps.empty() || out.pps.empty()) return damaged("is not H.264 with 4-byte lengths");
   take_tables(stbl, timescale, &out);
   if (out.samples.empty()) take_fragments(boxes_in(file, 0), timescale, &out);
-  if (out.samples.empty()) return damaged("holds no picture");
+  if (out.samples.empty()) return damaged("contains no frames");
   for (const VideoIndex::Sample& sample : out.samples)
     if (sample.offset > file.size() || sample.size > file.size() - sample.offset)
-      return damaged("has pictures beyond its end");
+      return damaged("has frames beyond its end");
   out.samples[0].key = true;
   return out;
 }

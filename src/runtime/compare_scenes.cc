@@ -173,7 +173,8 @@ Result<std::vector<ComparisonResult>> compare_scenes(const ComparisonRequest& re
     GLOAM_TRY(Seen seen, see(request, row, progress));
     if (!rows.empty() && (seen.width != rows[0].width || seen.height != rows[0].height))
       return Error{ErrorKind::kInput,
-                   fmt::format("camera '{}' is not of one size in all scenes", request.camera)};
+                   fmt::format("camera '{}' does not have the same image size in all scenes",
+                               request.camera)};
     instants = std::max(instants, seen.strip.size());
     results.push_back(seen.result);
     rows.push_back(std::move(seen));

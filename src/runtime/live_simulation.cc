@@ -301,8 +301,9 @@ ProbeSources LiveSimulation::probe_sources() {
   sources.metered_ev100 = [this](const std::string& camera, const Snapshot& now) -> Result<double> {
     const std::shared_ptr<ExposureMeter> meter = meters_.of(camera, *now.data().world);
     if (meter != nullptr) return meter->ev100_at(now.step());
-    return Error{ErrorKind::kInput,
-                 fmt::format("camera '{}' has an automatic exposure that nobody meters", camera)};
+    return Error{
+        ErrorKind::kInput,
+        fmt::format("camera '{}' has automatic exposure, but no exposure meter is open", camera)};
   };
   return sources;
 }
@@ -355,7 +356,8 @@ Result<std::vector<Command>> LiveSimulation::decode_input(std::string_view topic
   GLOAM_TRY(const auto found, find_topics(*table, std::string(topic)));
   const auto* decode = std::get_if<InputDecoder>(&found.front()->code);
   if (decode == nullptr)
-    return Error{ErrorKind::kUsage, fmt::format("topic '{}' is said, not heard", topic)};
+    return Error{ErrorKind::kUsage,
+                 fmt::format("'{}' is an output topic and cannot be published to", topic)};
   const Snapshot now = simulator_->latest();
   auto commands = (*decode)(data, now, simulator_->timestep().value());
   const std::lock_guard lock(received_mutex_);
@@ -401,13 +403,13 @@ Result<Pose> LiveSimulation::body_pose(Body body) {
   GLOAM_TRY(const auto world, solve_latest(&PoseSolver::solve_bodies, poses));
   if (body.world != 0 && body.world != world->serial) {
     return Error{ErrorKind::kInput,
-                 "the handle of a body is of another World than the one that runs",
+                 "the Body handle belongs to another World than the running one",
                  {},
-                 "find it again in Simulation::world()"};
+                 "look it up again in Simulation::world()"};
   }
   const auto id = static_cast<size_t>(body.id);
   if (body.id < 0 || 3 * id >= poses.body_p.size()) {
-    return Error{ErrorKind::kInput, "there is no such body"};
+    return Error{ErrorKind::kInput, "invalid Body handle"};
   }
   const double* p = poses.body_p.data() + 3 * id;
   const double* R = poses.body_R.data() + 9 * id;

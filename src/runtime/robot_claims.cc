@@ -63,17 +63,17 @@ Result<std::unique_ptr<ControlLease>> RobotClaims::claim(
   const bool is_other = robot.world != 0 && robot.world != world->serial;
   if (is_other || robot.id < 0 || static_cast<size_t>(robot.id) >= world->robots.size()) {
     return Error{ErrorKind::kUsage,
-                 fmt::format("there is no robot number {} in the World that runs", robot.id),
+                 fmt::format("there is no robot number {} in the running World", robot.id),
                  {},
-                 "find it in Simulation::world()"};
+                 "look it up in Simulation::world()"};
   }
   const std::string& name = world->robots[static_cast<size_t>(robot.id)].name;
   const std::lock_guard lock(table_->mutex);
   if (table_->by_robot.contains(name)) {
     return Error{ErrorKind::kUsage,
-                 fmt::format("robot '{}' is claimed already", name),
+                 fmt::format("robot '{}' is already claimed", name),
                  {},
-                 "wait until its ControlLease is given back"};
+                 "wait until its ControlLease is released"};
   }
   auto lease = std::make_unique<Lease>(table_, name, std::move(post));
   table_->by_robot.emplace(name, lease.get());
@@ -92,7 +92,7 @@ Status RobotClaims::check(const CompiledWorld& world, std::span<const Command> c
       return Error{ErrorKind::kUsage,
                    fmt::format("robot '{}' is claimed by another client", name),
                    {},
-                   "claim it yourself when its ControlLease is given back"};
+                   "claim it after its ControlLease has been released"};
     }
   }
   return {};

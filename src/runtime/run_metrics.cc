@@ -63,7 +63,7 @@ MetricsThread::MetricsThread(std::shared_ptr<SnapshotQueue> queue, Metrics& metr
           if (const auto values = state->row(snapshot); values.ok())
             recorder->add_state(*values);
           else
-            log_warning("state.csv lacks t = {} s: {}", snapshot.time(),
+            log_warning("state.csv has no row for t = {} s: {}", snapshot.time(),
                         values.error().to_string());
         }
       }) {}

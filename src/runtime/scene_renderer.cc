@@ -53,12 +53,12 @@ struct SceneRenderer::State {
 Status SceneRenderer::State::solve(std::span<const Snapshot> snapshots) {
   keys.resize(snapshots.size());
   for (size_t i = 0; i < snapshots.size(); ++i) {
-    if (!snapshots[i]) return Error{ErrorKind::kUsage, "an empty Snapshot"};
+    if (!snapshots[i]) return Error{ErrorKind::kUsage, "the Snapshot is empty"};
     if (snapshots[i].data().world != shared->world)
       return Error{ErrorKind::kUsage,
-                   "a Snapshot of another World than the renderer's",
+                   "the Snapshot belongs to another World than the renderer",
                    {},
-                   "make a SceneRenderer of Snapshot::world()"};
+                   "create a SceneRenderer for Snapshot::world()"};
     GLOAM_TRY_STATUS(solver->solve(snapshots[i], keys[i]));
   }
   return {};
@@ -67,10 +67,9 @@ Status SceneRenderer::State::solve(std::span<const Snapshot> snapshots) {
 Result<SceneRenderer::State::OpenCamera*> SceneRenderer::State::camera(
     const CameraRequest& request) {
   if (std::ranges::count(request.outputs, "events") > 0)
-    return Error{ErrorKind::kInput,
-                 fmt::format("camera '{}': events are of all frames up to a time, a picture by "
-                             "itself has none",
-                             request.camera)};
+    return Error{ErrorKind::kInput, fmt::format("camera '{}': events need all frames up to a time "
+                                                "and are not available for single images",
+                                                request.camera)};
   OpenCamera& open = cameras[key_of(request)];
   if (open.sensor != nullptr) return &open;
   CameraRequest own = request;
@@ -111,7 +110,7 @@ Result<std::shared_ptr<const CameraFrame>> SceneRenderer::render(std::span<const
                                                                  const CameraRequest& request,
                                                                  int64_t frame_index) {
   State& s = *state_;
-  if (exposure.empty()) return Error{ErrorKind::kUsage, "a picture needs a Snapshot"};
+  if (exposure.empty()) return Error{ErrorKind::kUsage, "rendering an image requires a Snapshot"};
   GLOAM_TRY_STATUS(s.solve(exposure));
   GLOAM_TRY(State::OpenCamera* const camera, s.camera(request));
   std::vector<const PoseFrame*> keys;
@@ -131,7 +130,7 @@ Result<std::shared_ptr<const LidarScan>> SceneRenderer::scan(std::span<const Sna
                                                              int64_t scan_index) {
   State& s = *state_;
   if (sweep.size() < 2)
-    return Error{ErrorKind::kUsage, "a scan needs the Snapshots of its begin and its end"};
+    return Error{ErrorKind::kUsage, "a scan requires the Snapshots of its start and its end"};
   GLOAM_TRY_STATUS(s.solve(sweep));
   GLOAM_TRY(LidarSensor* const lidar, s.lidar(request.lidar));
   return lidar->scan(*s.shared->renderer, s.shared->turns, s.keys, scan_index);

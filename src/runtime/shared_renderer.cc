@@ -13,14 +13,14 @@ void report_left_out(const std::vector<Error>& left_out) {
   for (size_t i = 0; i < std::min(left_out.size(), kMost); ++i)
     log_warning("{}", left_out[i].to_string());
   if (left_out.size() > kMost)
-    log_warning("{} more are not drawn as told", left_out.size() - kMost);
+    log_warning("{} more elements are not rendered as specified", left_out.size() - kMost);
 }
 
 }  // namespace
 
 Result<std::shared_ptr<SharedRenderer>> SharedRenderer::create(
     std::shared_ptr<const CompiledWorld> world) {
-  return or_no_memory("drawing the scene", [&]() -> Result<std::shared_ptr<SharedRenderer>> {
+  return or_no_memory("rendering the scene", [&]() -> Result<std::shared_ptr<SharedRenderer>> {
     auto shared = std::make_shared<SharedRenderer>();
     GLOAM_TRY(shared->description, describe_for_rendering(*world));
     report_left_out(shared->description.unsupported);
@@ -53,9 +53,9 @@ void SharedRenderers::keep_only(const std::shared_ptr<const CompiledWorld>& worl
 
 Error other_schedule(const std::string& what) {
   return {ErrorKind::kInput,
-          what + " takes its samples at other times in the recompiled World than its stream",
+          what + " has a different sampling schedule in the recompiled World",
           {},
-          "open the stream anew"};
+          "open the stream again"};
 }
 
 }  // namespace gloam

@@ -28,10 +28,10 @@ void tell_what_was_reached(const CameraRequest& request, const CameraFrame& fram
   const double pixels =
       static_cast<double>(frame.intrinsics.width) * static_cast<double>(frame.intrinsics.height);
   const double unreached = static_cast<double>(stats.unreached) / pixels;
-  log_info("camera {}: {:.0f} samples per pixel; {:.1f} % of the picture is above {:g} % error{}",
+  log_info("camera {}: {:.0f} samples per pixel; {:.1f} % of the image is above {:g} % error{}",
            frame.camera, static_cast<double>(stats.paths) / pixels, 100 * unreached,
            100 * *request.render.error,
-           unreached > 0 ? fmt::format(" at {} samples", request.render.samples()) : "");
+           unreached > 0 ? fmt::format(" after {} samples", request.render.samples()) : "");
 }
 
 /// Against which a still's motion counts: that of the picture 1 / rate earlier, or the first.
@@ -50,8 +50,8 @@ Status check_room(const std::vector<std::unique_ptr<CameraSensor>>& sensors) {
   const Intrinsics& k = sensors.front()->intrinsics();
   return check_memory(kept + most,
                       sensors.size() == 1
-                          ? fmt::format("a picture of {} x {} pixels", k.width, k.height)
-                          : fmt::format("making {} pictures", sensors.size()),
+                          ? fmt::format("an image of {} x {} pixels", k.width, k.height)
+                          : fmt::format("rendering {} images", sensors.size()),
                       "lower the resolution or ask for fewer outputs or cameras");
 }
 
@@ -73,12 +73,13 @@ Result<std::vector<CameraFrame>> render_stills(const World& world, double time,
   std::vector<std::unique_ptr<CameraSensor>> sensors;
   for (const CameraRequest& request : requests) {
     if (std::ranges::count(request.outputs, "events") > 0) {
-      return Error{ErrorKind::kInput,
-                   fmt::format("camera '{}': events are of all frames up to a time, so a still has "
-                               "none",
-                               request.camera),
-                   {},
-                   "record them: gloam run, with the output 'events'"};
+      return Error{
+          ErrorKind::kInput,
+          fmt::format(
+              "camera '{}': events need all frames up to a time and are not available for stills",
+              request.camera),
+          {},
+          "record them with gloam run and the output 'events'"};
     }
     GLOAM_TRY(auto sensor, CameraSensor::create(shared->description, request, options.seed));
     GLOAM_TRY_STATUS(sensor->set_temperatures(world.compiled()->scene.temperatures));

@@ -33,34 +33,35 @@ constexpr std::string_view kNoConverter =
     "MJCF or URDF and scenes in TOML";
 
 constexpr std::array kSignatures = {
-    Signature{"SQLite format 3\0"sv, "is an SQLite database, as of a ROS 2 bag (.db3)",
+    Signature{"SQLite format 3\0"sv, "is an SQLite database, such as that of a ROS 2 bag (.db3)",
               kConvertFolder},
     Signature{"#ROSBAG V"sv, "is a ROS 1 bag", kConvertBag},
-    Signature{"#ROSRECORD V"sv, "is a ROS 1 bag of an early format",
-              "rewrite it first: rosbag fix {0} {1}_fixed.bag; then rosbags-convert to MCAP"},
-    Signature{"\x28\xb5\x2f\xfd"sv, "is compressed by zstd", "decompress it: zstd -d {0}"},
-    Signature{"\x1f\x8b"sv, "is compressed by gzip", "decompress it: gunzip {0}"},
-    Signature{"BZh"sv, "is compressed by bzip2", "decompress it: bunzip2 {0}"},
-    Signature{"\xfd\x37zXZ\0"sv, "is compressed by xz", "decompress it: unxz {0}"},
-    Signature{"\x04\x22\x4d\x18"sv, "is compressed by LZ4", "decompress it: lz4 -d {0}"},
+    Signature{"#ROSRECORD V"sv, "is a ROS 1 bag in an early format",
+              "rewrite it with rosbag fix {0} {1}_fixed.bag, then convert it to MCAP with "
+              "rosbags-convert"},
+    Signature{"\x28\xb5\x2f\xfd"sv, "is compressed with zstd", "decompress it: zstd -d {0}"},
+    Signature{"\x1f\x8b"sv, "is compressed with gzip", "decompress it: gunzip {0}"},
+    Signature{"BZh"sv, "is compressed with bzip2", "decompress it: bunzip2 {0}"},
+    Signature{"\xfd\x37zXZ\0"sv, "is compressed with xz", "decompress it: unxz {0}"},
+    Signature{"\x04\x22\x4d\x18"sv, "is compressed with LZ4", "decompress it: lz4 -d {0}"},
     Signature{"PK\x03\x04"sv, "is a ZIP archive", "unpack it: unzip {0}"},
-    Signature{"PK\x05\x06"sv, "is an empty ZIP archive", "unpack another"},
+    Signature{"PK\x05\x06"sv, "is an empty ZIP archive", "use another archive"},
     Signature{"7z\xbc\xaf\x27\x1c"sv, "is a 7-Zip archive", "unpack it: 7z x {0}"},
     Signature{"ustar"sv, "is a tar archive", "unpack it: tar -xf {0}", 257},
     Signature{"\x89HDF\r\n\x1a\n"sv, "is an HDF5 file",
-              "write its poses into a TUM file or its messages into an MCAP log, by h5py and mcap "
+              "write its poses to a TUM file or its messages to an MCAP log with h5py and mcap "
               "(pip install h5py mcap)"},
     Signature{"ULog\x01\x12\x35"sv, "is a PX4 log (ULog)",
-              "convert it: ulog2rosbag of pyulog makes a ROS 1 bag, rosbags-convert makes MCAP of "
-              "that"},
+              "convert it to a ROS 1 bag with ulog2rosbag from pyulog, then to MCAP with "
+              "rosbags-convert"},
     Signature{"RRF"sv, "is a Rerun recording", kNoConverter},
     Signature{"PAR1"sv, "is a Parquet table", kNoConverter},
     Signature{"\x93NUMPY"sv, "is a NumPy array", kNoConverter},
     Signature{"\x7f"
               "ELF"sv,
               "is a program", kNoConverter},
-    Signature{"\x89PNG\r\n"sv, "is a PNG picture", kNoConverter},
-    Signature{"\xff\xd8\xff"sv, "is a JPEG picture", kNoConverter},
+    Signature{"\x89PNG\r\n"sv, "is a PNG image", kNoConverter},
+    Signature{"\xff\xd8\xff"sv, "is a JPEG image", kNoConverter},
     Signature{"%PDF-"sv, "is a PDF document", kNoConverter},
 };
 constexpr size_t kHead = 512;  // bytes of a file that are looked at
@@ -105,17 +106,17 @@ std::optional<ForeignFormat> foreign_format(const fs::path& path) {
   if (stream.bad() || !stream.is_open()) return {};
   if (head.empty()) return ForeignFormat{"is empty", "it has 0 bytes: was it copied completely?"};
   if (head.size() < kMcapMagic.size() && kMcapMagic.starts_with(head))
-    return ForeignFormat{fmt::format("is an MCAP log that is cut after {} bytes", head.size()),
-                         "nothing can be recovered of it"};
+    return ForeignFormat{
+        fmt::format("is an MCAP log that is truncated after {} bytes", head.size()),
+        "nothing can be recovered from it"};
   for (const Signature& signature : kSignatures)
     if (head.size() >= signature.offset &&
         head.substr(signature.offset).starts_with(signature.bytes))
       return of_file(signature, path);
   if (head.find("rosbag2_bagfile_information") != std::string_view::npos)
-    return ForeignFormat{
-        "describes a ROS 2 bag",
-        "give the .mcap file beside it; convert other storages by rosbags-convert --dst-storage "
-        "mcap"};
+    return ForeignFormat{"describes a ROS 2 bag",
+                         "give the .mcap file beside it; convert other storage formats with "
+                         "rosbags-convert --dst-storage mcap"};
   return {};
 }
 

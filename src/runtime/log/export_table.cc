@@ -58,7 +58,7 @@ class ColumnLister {
     if (field.type.kind == FieldKind::kMessage) return add_part(part_of(field), path + ".");
     if (columns_.size() == kMostColumns)
       return Error{ErrorKind::kUnsupported,
-                   fmt::format("a table of more than {} columns is not written", kMostColumns)};
+                   fmt::format("a table can have at most {} columns", kMostColumns)};
     columns_.push_back({path, kind_of(field.type.kind)});
     return {};
   }

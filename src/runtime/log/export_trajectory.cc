@@ -35,7 +35,7 @@ Result<StampedPose> pose_at(const DynamicMessage& message, const std::string& ab
   GLOAM_TRY(const auto p, message.numbers(above + place.prefix + place.position));
   GLOAM_TRY(const auto q, message.numbers(above + place.prefix + place.orientation));
   if (p.size() != 3 || q.size() != 4)
-    return Error{ErrorKind::kInput, "a pose of another number of numbers than 3 and 4"};
+    return Error{ErrorKind::kInput, "a pose must have 3 position and 4 orientation numbers"};
   return StampedPose{seconds * 1'000'000'000 + nanoseconds,
                      {{p[0], p[1], p[2]}, {q[3], q[0], q[1], q[2]}}};
 }
@@ -111,13 +111,14 @@ Result<std::vector<StampedPose>> read_trajectory(const std::filesystem::path& lo
     }));
   } else {
     return Error{ErrorKind::kUnsupported,
-                 fmt::format("topic '{}' is {}, which has no pose", topic, logged.schema.name()),
+                 fmt::format("topic '{}' has the type {}, which contains no pose", topic,
+                             logged.schema.name()),
                  {},
-                 "name an Odometry or PoseStamped, or a frame as in /tf:robot/base"};
+                 "choose an Odometry or PoseStamped topic, or a frame such as /tf:robot/base"};
   }
   if (poses.empty())
     return Error{ErrorKind::kInput,
-                 fmt::format("topic '{}' has no pose in {}", topic, log.string())};
+                 fmt::format("topic '{}' has no poses in {}", topic, log.string())};
   return poses;
 }
 

@@ -50,9 +50,10 @@ class LiveLog final : public LogStream {
 Result<std::unique_ptr<LogStream>> start_log(Simulation& simulation, const LogRequest& request) {
   auto* live = dynamic_cast<LiveSimulation*>(&simulation);
   if (live == nullptr)
-    return Error{ErrorKind::kUsage, "a log is written of a simulation, not of a replay"};
+    return Error{ErrorKind::kUsage,
+                 "a log can be recorded from a simulation, but not from a replay"};
   if (live->simulator().is_on_sim_thread())
-    return Error{ErrorKind::kUsage, "a step hook cannot begin a log"};
+    return Error{ErrorKind::kUsage, "a step hook cannot start a log"};
   const Rest rest(*live);
   GLOAM_TRY(auto recorder, LogRecorder::start(*live, request));
   return std::unique_ptr<LogStream>(std::make_unique<LiveLog>(*live, std::move(recorder)));

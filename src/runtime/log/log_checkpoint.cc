@@ -38,9 +38,9 @@ Result<Checkpoint> log_checkpoint(const std::filesystem::path& file,
   GLOAM_TRY(const LoggedRuns::Run* run, runs.find(place));
   GLOAM_TRY_STATUS(run->same_bits);
   if (!run->has_beginning)
-    return Error{ErrorKind::kUnsupported,
-                 "the Commands from the run's beginning on are not in the log: it cannot be gone "
-                 "on from"};
+    return Error{
+        ErrorKind::kUnsupported,
+        "cannot resume from this log: the run's Commands are not logged from its beginning"};
   GLOAM_TRY(const gloam_msgs::State state, last_state(log, run->number, time));
   auto data = std::make_shared<CheckpointData>();
   data->record = run->record;

@@ -38,7 +38,7 @@ class Player final : public LogPlayer {
   Status seek(double time) override {
     if (!(time >= 0 && time <= end() * (1 + 1e-9)))
       return Error{ErrorKind::kUsage,
-                   fmt::format("{} s is not in the log's 0 to {} s", time, end())};
+                   fmt::format("{} s is outside the log, which covers 0 to {} s", time, end())};
     const bool was_paused = simulation_->paused();
     const Status status = simulator().seek(std::llround(time / simulator().timestep().value()));
     if (!was_paused && status.ok()) simulation_->resume();
@@ -56,7 +56,7 @@ class Player final : public LogPlayer {
 
 Result<std::unique_ptr<LogPlayer>> LogPlayer::open(const LogReplay& replay) {
   if (replay.motion == ReplayMotion::kNewRun)
-    return Error{ErrorKind::kUsage, "a new run is no log that can be played"};
+    return Error{ErrorKind::kUsage, "a new run cannot be played from a log"};
   GLOAM_TRY(McapReader log, McapReader::open(replay.log));
   auto player = std::make_unique<Player>(std::move(log));
   GLOAM_TRY_STATUS(player->start(replay));

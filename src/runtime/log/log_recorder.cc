@@ -243,8 +243,7 @@ Status LogRecorder::finish(const Snapshot& last) {
   take(last);
   if (hook_inputs_->lost() > 0)
     log_warning(
-        "{}: what a step hook wrote in {} steps found no room: the run cannot be stepped "
-        "again",
+        "{}: values that a step hook wrote in {} steps were lost: the run cannot be replayed",
         request_.file.string(), hook_inputs_->lost());
   GLOAM_TRY_STATUS(partial(channels_->queue().close()));
   return partial(fault_);

@@ -22,10 +22,9 @@ bool is_same_sensor(const mjModel& a, int i, const mjModel& b, int k) {
 Result<std::unique_ptr<LoggedMotion>> LoggedMotion::create(
     const LoggedRuns::Run& run, const std::shared_ptr<const CompiledWorld>& world) {
   if (!run.has_beginning || run.record.chapters.size() != 1)
-    return Error{
-        ErrorKind::kUnsupported,
-        "the run began from a checkpoint or was recompiled on its way: its motion cannot be "
-        "followed in another World"};
+    return Error{ErrorKind::kUnsupported,
+                 "the run started from a checkpoint or was recompiled: its motion cannot be "
+                 "replayed in another World"};
   GLOAM_TRY(auto restepper, Restepper::create(run.record, make_controllers));
   const CompiledWorld& from = *run.record.chapters.front().world;
   return std::unique_ptr<LoggedMotion>(
@@ -39,9 +38,9 @@ Status LoggedMotion::advance(int64_t step, mjData* data) {
   Stepper& stepper = restepper_->loop().stepper();
   if (step == last_step_ && stepper.hash() != last_hash_)
     return Error{ErrorKind::kPartial,
-                 "the run was not the logged one: its last state hash differs",
+                 "the replay does not match the logged run: the hash of its last state differs",
                  {},
-                 "`gloam replay LOG --verify` tells where"};
+                 "`gloam replay LOG --verify` reports where"};
   transfer_state(same_, stepper.data(), *data);
   return {};
 }

@@ -36,9 +36,9 @@ class RunReader {
     GLOAM_TRY_STATUS(for_each(kWorldTopic, [this](const auto& m) { return add_world(m); }));
     if (worlds_.empty())
       return Error{ErrorKind::kInput,
-                   log_.name() + " holds no run of Gloam's: it cannot be stepped again",
+                   log_.name() + " contains no Gloam run and cannot be replayed",
                    {},
-                   "`gloam info` tells what it holds"};
+                   "`gloam info` lists its contents"};
     GLOAM_TRY_STATUS(for_each(kInputTopic, [this](const auto& m) { return add_input(m); }));
     GLOAM_TRY_STATUS(for_each(kStateTopic, [this](const auto& m) { return add_state(m); }));
     GLOAM_TRY_STATUS(for_each(kCommandTopic, [this](const auto& m) { return add_command(m); }));
@@ -107,8 +107,9 @@ class RunReader {
     const bool fits = input.index.size() == input.value.size() &&
                       std::ranges::all_of(input.index, [&](int i) { return i >= 0 && i < size; });
     if (!fits)
-      return Error{ErrorKind::kInput, fmt::format("{}: the inputs at step {} are not of its state",
-                                                  log_.name(), input.step)};
+      return Error{
+          ErrorKind::kInput,
+          fmt::format("{}: the inputs at step {} do not match the state", log_.name(), input.step)};
     constexpr int kTime = 0;  // place of the time in mjSTATE_INTEGRATION
     if (std::ranges::find(input.index, kTime) != input.index.end()) sets_time_.insert(input.run);
     runs_.runs[input.run].record.inputs.push_back(
@@ -150,8 +151,9 @@ Result<LoggedRuns> LoggedRuns::read(const McapReader& log, const std::filesystem
 Result<const LoggedRuns::Run*> LoggedRuns::find(int64_t place) const {
   if (place >= 0 && place < static_cast<int64_t>(runs.size()))
     return &std::next(runs.begin(), static_cast<std::ptrdiff_t>(place))->second;
-  return Error{ErrorKind::kUsage,
-               fmt::format("the log has {} run(s), from 0: none is run {}", runs.size(), place)};
+  return Error{
+      ErrorKind::kUsage,
+      fmt::format("the log has {} run(s), counted from 0, and no run {}", runs.size(), place)};
 }
 
 }  // namespace gloam

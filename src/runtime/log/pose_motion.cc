@@ -36,7 +36,7 @@ Result<std::unique_ptr<PoseMotion>> PoseMotion::create(const McapReader& log,
                                                        std::shared_ptr<const CompiledWorld> to) {
   if (run.record.chapters.size() != 1)
     return Error{ErrorKind::kUnsupported,
-                 "the run was recompiled on its way: its motion cannot be followed in one World"};
+                 "the run was recompiled: its motion cannot be replayed in one World"};
   return or_no_memory("the poses of the run", [&]() -> Result<std::unique_ptr<PoseMotion>> {
     std::unique_ptr<PoseMotion> made(new PoseMotion(log, run, std::move(to)));
     GLOAM_TRY_STATUS(made->look_at(0));
@@ -56,11 +56,11 @@ Result<std::optional<gloam_msgs::State>> PoseMotion::next() {
     const auto size = static_cast<size_t>(mj_stateSize(from_->model.get(), mjSTATE_INTEGRATION));
     if (state.state.size() != size)
       return Error{ErrorKind::kInput,
-                   fmt::format("the run's states have {} numbers, the scene's have {} now: its "
-                               "poses cannot be told apart",
+                   fmt::format("the run's states have {} numbers, but the scene's states now have "
+                               "{}: the poses cannot be read",
                                state.state.size(), size),
                    {},
-                   "bring back the files that it was written with"};
+                   "restore the files that it was recorded with"};
     return std::optional(std::move(state));
   }
 }

@@ -62,7 +62,7 @@ class Replay {
       GLOAM_TRY(auto stepped, LoggedMotion::create(run_, world.compiled()));
       return std::unique_ptr<Motion>(std::move(stepped));
     }
-    notes_.emplace_back("poses only: bodies are where the logged states say, interpolated between");
+    notes_.emplace_back("poses only: bodies follow the logged states, interpolated in between");
     if (!run_.same_bits.ok()) notes_.back() += "; " + run_.same_bits.error().message;
     GLOAM_TRY(auto poses, PoseMotion::create(log_, run_, world.compiled()));
     return std::unique_ptr<Motion>(std::move(poses));
@@ -80,16 +80,17 @@ class Replay {
     GLOAM_TRY_STATUS(run_.same_bits);  // else its Commands were not read
     if (!run_.has_beginning || run_.record.chapters.size() != 1)
       return Error{ErrorKind::kUnsupported,
-                   "the run's Commands from its beginning on are not in the log, or it was "
-                   "recompiled on its way: it cannot be run anew"};
+                   "the run cannot be repeated: it was recompiled, or its Commands are not logged "
+                   "from its beginning"};
     const double timestep = request_.simulation.timestep > 0
                                 ? request_.simulation.timestep
                                 : double{world.compiled()->model->opt.timestep};
     GLOAM_TRY(request_.commands, commands_for(run_.record, *world.compiled(), timestep));
-    notes_.emplace_back(fmt::format(
-        "a new run: {} of the log's {} Commands act in the changed scene by its own physics",
-        request_.commands.size(), run_.record.commands.size()));
-    if (!run_.record.inputs.empty()) notes_.back() += "; what step hooks wrote is left out";
+    notes_.emplace_back(
+        fmt::format("a new run: {} of the log's {} Commands are applied to the changed scene, "
+                    "which has its own physics",
+                    request_.commands.size(), run_.record.commands.size()));
+    if (!run_.record.inputs.empty()) notes_.back() += "; values written by step hooks are omitted";
     return std::unique_ptr<Motion>();
   }
 
@@ -110,10 +111,11 @@ Status check_log_is_kept(const LogReplay& replay) {
       request.overwrite && std::filesystem::equivalent(folder, request.out, code) && !code;
   if (!in_folder && !(std::filesystem::equivalent(replay.log, request.log.file, code) && !code))
     return {};
-  return Error{ErrorKind::kUsage,
-               fmt::format("the replay would replace {}, which it reads", replay.log.string()),
-               {},
-               "record it elsewhere"};
+  return Error{
+      ErrorKind::kUsage,
+      fmt::format("the replay would overwrite {}, the log that it reads", replay.log.string()),
+      {},
+      "record it to another folder or file"};
 }
 
 }  // namespace

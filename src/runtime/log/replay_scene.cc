@@ -20,10 +20,11 @@ Result<World> compile_alike(const Scene& scene, const CompiledWorld& logged) {
   if (!world.ok()) return world;
   const std::string field = physical_difference(*logged.model, *world->compiled()->model);
   if (field.empty()) return world;
-  return Error{ErrorKind::kUsage,
-               fmt::format("it would move otherwise: {} differs", field),
-               {},
-               "--restep runs the changed scene anew; a replay changes what is seen alone"};
+  return Error{
+      ErrorKind::kUsage,
+      fmt::format("the physics of the model differs in {}", field),
+      {},
+      "use --restep for a new run of the changed scene; a replay can change only its appearance"};
 }
 
 // Says which of the overlays and settings changes physics.

@@ -53,10 +53,11 @@ Status check_list(const fs::path& list, const std::string& request) {
   GLOAM_TRY(const std::string text, read_text_file(list));
   const Json json = parse_bounded<Json>(text);
   if (json.is_object() && json.value("request", "") == request) return {};
-  return Error{ErrorKind::kUsage,
-               fmt::format("{} lists variants of another log, file or settings", list.string()),
-               {},
-               "give another --out, or --overwrite"};
+  return Error{
+      ErrorKind::kUsage,
+      fmt::format("{} lists variants of another log, scene file or settings", list.string()),
+      {},
+      "choose another folder with --out, or replace it with --overwrite"};
 }
 
 Status write_list(const fs::path& folder, const std::string& request,
@@ -74,8 +75,11 @@ Status write_list(const fs::path& folder, const std::string& request,
 Result<std::vector<ReplayVariant>> replay_variants(const VariantRequest& request,
                                                    const ProgressCallback& progress) {
   const fs::path& folder = request.replay.request.out;
-  if (folder.empty()) return Error{ErrorKind::kUsage, "variants need a folder", {}, "--out FOLDER"};
-  if (request.count < 1) return Error{ErrorKind::kUsage, "fewer than one variant"};
+  if (folder.empty())
+    return Error{
+        ErrorKind::kUsage, "variants require a results folder", {}, "set it with --out FOLDER"};
+  if (request.count < 1)
+    return Error{ErrorKind::kUsage, "the number of variants must be at least 1"};
   GLOAM_TRY(const std::string print, fingerprint(request));
   if (!request.replay.request.overwrite) GLOAM_TRY_STATUS(check_list(folder / kListName, print));
   std::error_code code;

@@ -120,14 +120,14 @@ Result<RunText> parse_run_text(std::string_view json_text) {
           {package.at("name").get<std::string>(), package.at("folder").get<std::string>()});
     const bool is_timestep = text.timestep == 0 || (text.timestep >= 1e-9 && text.timestep < 1e3);
     if (text.run < 0 || text.step < 0 || !is_timestep)
-      return Error{ErrorKind::kInput,
-                   fmt::format("the log's description of its run is damaged: run {}, step {}, "
-                               "timestep {:g} s",
-                               text.run, text.step, text.timestep)};
+      return Error{
+          ErrorKind::kInput,
+          fmt::format("the log's run description is damaged: run {}, step {}, timestep {:g} s",
+                      text.run, text.step, text.timestep)};
     return text;
   } catch (const std::exception& error) {
     return Error{ErrorKind::kInput,
-                 fmt::format("the log's description of its run: {:.200}", error.what())};
+                 fmt::format("the log's run description: {:.200}", error.what())};
   }
 }
 
@@ -168,9 +168,9 @@ Result<Scene> scene_of(const RunText& text, const SceneFolder& folder) {
   // A stranger's log could lead out of the folder.
   for (const fs::path file : {text.file, text.bare_model})
     if (file != file.filename() || file == "..")
-      return Error{ErrorKind::kInput, fmt::format("the log's run is of '{:.80}', which is no file "
-                                                  "of a folder",
-                                                  file.string())};
+      return Error{ErrorKind::kInput,
+                   fmt::format("the log's run refers to '{:.80}', which is not a plain file name",
+                               file.string())};
   Scene scene;
   if (text.bare_model.empty()) {
     GLOAM_TRY(scene, parse_scene(text.toml, folder.path, folder.access));
@@ -202,14 +202,14 @@ Status check_same_bits(const RunText& text, const CompiledWorld& world, const Sc
   if (is_same_program && is_same_model(text, *world.model)) return {};
   const std::string changed = changed_files(text, folder.path);
   if (!changed.empty())
-    return Error{ErrorKind::kInput, changed, {}, "bring back the files that it was written with"};
+    return Error{ErrorKind::kInput, changed, {}, "restore the files that it was recorded with"};
   return Error{ErrorKind::kInput,
-               fmt::format("the log was written by another program or machine (Gloam {}, MuJoCo "
-                           "{}, {}; this is Gloam {}, MuJoCo {}, {})",
+               fmt::format("the log was written by another version or on another machine (Gloam "
+                           "{}, MuJoCo {}, {}; this is Gloam {}, MuJoCo {}, {})",
                            text.version, text.mujoco, text.configuration, version(),
                            mujoco_version(), configuration()),
                {},
-               "step it again with the version that wrote it; a replay shows its poses"};
+               "verify it with the version that wrote it; a replay uses its logged poses"};
 }
 
 }  // namespace gloam

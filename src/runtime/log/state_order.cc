@@ -11,7 +11,7 @@ Error StateOrder::damaged(const gloam_msgs::State& state, const std::string& why
           fmt::format("{}: the state at step {} of run {} is damaged: {}", log_, state.step,
                       state.run, why),
           {},
-          "gloam export and other programs still read the log's other topics"};
+          "gloam export and other programs can still read the log's other topics"};
 }
 
 Status StateOrder::check(const gloam_msgs::State& state, double timestep, bool time_is_set) {
@@ -19,14 +19,14 @@ Status StateOrder::check(const gloam_msgs::State& state, double timestep, bool t
   const double time = state.state[0];
   const bool begins = state.run != run_;
   if (state.run < run_ || state.run < 0)
-    return damaged(state, fmt::format("it follows one of run {}", run_));
+    return damaged(state, fmt::format("it follows a state of run {}", run_));
   if (state.step < 0 || (!begins && state.step <= step_))
-    return damaged(state, fmt::format("it follows one at step {}", step_));
+    return damaged(state, fmt::format("it follows a state at step {}", step_));
   const int64_t steps = begins ? state.step : state.step - step_;
   const int64_t most = begins ? kMostStepsBeforeLog : kMostStepsBetweenStates;
   if (steps > most)
-    return damaged(
-        state, fmt::format("{} steps without a state lie before it, more than {}", steps, most));
+    return damaged(state,
+                   fmt::format("{} steps without a state precede it, more than {}", steps, most));
   // A keyframe may set the clock to a later time than 0.
   const double passed = begins ? time : time - time_;
   const double due = static_cast<double>(steps) * timestep;
@@ -34,7 +34,7 @@ Status StateOrder::check(const gloam_msgs::State& state, double timestep, bool t
   const bool fits =
       steps == 0 || (begins ? passed >= due - slack : std::abs(passed - due) <= slack);
   if (!time_is_set && !fits)
-    return damaged(state, fmt::format("its {} steps of {:g} s do not fit the {:g} s that passed",
+    return damaged(state, fmt::format("its {} steps of {:g} s do not match the elapsed {:g} s",
                                       steps, timestep, passed));
   run_ = state.run;
   step_ = state.step;

@@ -8,7 +8,7 @@ namespace gloam {
 
 Status refuse_empty_log(const McapReader& log) {
   if (log.statistics().messages > 0 || !log.pieces().empty()) return {};
-  return Error{ErrorKind::kInput, "the log is empty: it has no messages", {log.name(), 0, 0}};
+  return Error{ErrorKind::kInput, "the log is empty: it contains no messages", {log.name(), 0, 0}};
 }
 
 Result<TopicReader> TopicReader::find(const McapReader& log, const std::string& name) {
@@ -20,9 +20,10 @@ Result<TopicReader> TopicReader::find(const McapReader& log, const std::string& 
     const auto schema = log.schemas().find(channel.schema);
     if (channel.encoding != "cdr" || schema == log.schemas().end() ||
         schema->second.encoding != "ros2msg")
-      return Error{ErrorKind::kUnsupported,
-                   fmt::format("topic '{}' is '{}', not CDR by a definition in ros2msg", name,
-                               channel.encoding)};
+      return Error{
+          ErrorKind::kUnsupported,
+          fmt::format("topic '{}' has the encoding '{}' (expected CDR with a ros2msg definition)",
+                      name, channel.encoding)};
     const std::vector<uint8_t>& data = schema->second.data;
     const std::string_view text(reinterpret_cast<const char*>(data.data()), data.size());
     GLOAM_TRY(MessageSchema parsed, MessageSchema::parse(text, schema->second.name));

@@ -48,9 +48,9 @@ std::string first_difference(const mjModel& m, std::span<const double> logged,
   }
   for (size_t i = 0; i < logged.size(); ++i)
     if (logged[i] != again[i])
-      return fmt::format("number {} of the state differs by {:.3g}", i,
+      return fmt::format("element {} of the state differs by {:.3g}", i,
                          std::abs(logged[i] - again[i]));
-  return "the state is equal, its hash is not: an effect, an agent or an earlier step differs";
+  return "the state is equal but its hash is not: an effect, an agent or an earlier step differs";
 }
 
 class Verifier {
@@ -117,8 +117,8 @@ class Verifier {
     const LoggedRuns::Run& run = runs_.runs[number];
     GLOAM_TRY_STATUS(run.same_bits);
     if (!run.has_beginning) {
-      found_.notes.push_back(
-          fmt::format("run {} began from a checkpoint, not from the scene: not verified", number));
+      found_.notes.push_back(fmt::format(
+          "run {} started from a checkpoint, not from the scene, and was not verified", number));
       return {};
     }
     GLOAM_TRY(stepper_, Restepper::create(run.record, make_controllers));

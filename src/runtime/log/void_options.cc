@@ -16,10 +16,11 @@ struct VoidOption {
   std::string_view name;  ///< "" = all of the table
   std::string_view hint;
 };
-constexpr std::string_view kRestep = "--restep runs the changed scene anew, by its own physics";
+constexpr std::string_view kRestep =
+    "--restep starts a new run of the changed scene, with its own physics";
 constexpr VoidOption kVoidOptions[] = {
     {"sim", "duration", "--duration replays a part of the run"},
-    {"sim", "seed", "--seed draws the [[randomize]] tables of overlays; --restep runs it anew"},
+    {"sim", "seed", "--seed seeds the [[randomize]] tables of overlays; --restep starts a new run"},
     {"sim", "timestep", kRestep},
     {"robot", "controller", kRestep},
     {"robot", "keyframe", kRestep},
@@ -37,7 +38,7 @@ constexpr VoidOption kVoidOptions[] = {
     {"crowd", "speed", kRestep},
     {"crowd", "yields", kRestep},
     {"adversity", "people_speed", kRestep},
-    {"bridge", "", "--ros2, --zmq and --foxglove serve a replay"},
+    {"bridge", "", "use --ros2, --zmq or --foxglove for a live replay"},
 };
 
 /// "controller" of "robot.go1.controller.kp", "seed" of "sim.seed".
@@ -81,7 +82,7 @@ Status check_options_act(const Scene& logged, const Scene& changed) {
   if (other.empty() && !before.empty()) other = before.begin()->first;  // an overlay took it away
   if (other.empty()) return {};
   return Error{ErrorKind::kUsage,
-               fmt::format("'{}' has no effect in a replay: bodies move as they are logged", other),
+               fmt::format("'{}' has no effect in a replay: bodies move as logged", other),
                {},
                std::string(find_void(other)->hint)};
 }

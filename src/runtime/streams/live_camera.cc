@@ -81,7 +81,7 @@ Status LiveCamera::follow(const std::shared_ptr<const CompiledWorld>& world) {
   constexpr uint64_t kInFlight = 2;  // frames that are made and looked at
   GLOAM_TRY_STATUS(check_memory(
       memory.working + kInFlight * memory.frame,
-      fmt::format("camera '{}': pictures of {} x {} pixels", request_.camera, k.width, k.height),
+      fmt::format("camera '{}': images of {} x {} pixels", request_.camera, k.width, k.height),
       "lower the resolution"));
   GLOAM_TRY(auto solver, PoseSolver::create(world));
   GLOAM_TRY(SensorTiming timing,
@@ -152,7 +152,7 @@ Status LiveCamera::capture(const SnapshotWindow& window) {
   for (const Snapshot& snapshot : window.all()) {
     PoseFrame& key = keys_[keys.size()];
     if (const Status status = solver_->solve(snapshot, key); !status.ok()) {
-      log_error("a camera lost its poses: {}", status.error().to_string());
+      log_error("cannot compute the poses of a camera: {}", status.error().to_string());
       return {};
     }
     keys.push_back(&key);

@@ -62,7 +62,7 @@ Result<std::unique_ptr<LiveLidar>> LiveLidar::open(const StreamContext& context,
   live->thread_.start(
       std::move(queue),
       {.what = fmt::format("lidar '{}'", request.lidar),
-       .memory_hint = "lower its number of beams",
+       .memory_hint = "reduce the number of its beams",
        .take = [raw = live.get()](const SnapshotWindow& now) { return raw->take(now.keys[0]); },
        .on_end = request.on_end,
        .account = live->account_,
@@ -112,7 +112,7 @@ Status LiveLidar::take(const Snapshot& snapshot) {
   next_key_ = key + 1;
   if (gathered_ == 0 && key % stretches_ != 0) return {};
   if (const Status status = solver_->solve(snapshot, keys_[gathered_]); !status.ok()) {
-    log_error("a lidar lost its poses: {}", status.error().to_string());
+    log_error("cannot compute the poses of a lidar: {}", status.error().to_string());
     gathered_ = 0;
     return {};
   }

@@ -51,7 +51,7 @@ Result<std::unique_ptr<LiveSensors>> LiveSensors::open(const StreamContext& cont
       context.costs.open(stream_name(wanted.sensors), rate_of(options.due, simulator.timestep()));
   live->thread_.start(
       std::move(queue),
-      {.what = "a stream of sensors",
+      {.what = "a sensor stream",
        .take = [raw = live.get(), timestep = simulator.timestep()](
                    const SnapshotWindow& now) { return raw->sample(now.keys[0], timestep); },
        .on_end = wanted.on_end,

@@ -11,7 +11,7 @@ Result<std::unique_ptr<LiveSnapshots>> LiveSnapshots::open(const StreamContext& 
   const Rational timestep = context.simulator.timestep();
   const Rational every_step{timestep.den, timestep.num};
   const Rational rate = request.rate.num != 0 ? request.rate : every_step;
-  live->account_ = context.costs.open(due ? "topics of instants" : "snapshots",
+  live->account_ = context.costs.open(due ? "state topics" : "snapshots",
                                       due ? rate_of(due, timestep) : rate.value());
   GLOAM_TRY(auto queue, context.simulator.subscribe({.rate = rate,
                                                      .due = due,
@@ -19,8 +19,8 @@ Result<std::unique_ptr<LiveSnapshots>> LiveSnapshots::open(const StreamContext& 
                                                      .sensor = true,
                                                      .capacity = request.capacity,
                                                      .batch = batch}));
-  live->thread_.start(std::move(queue), {.what = "a stream of snapshots",
-                                         .memory_hint = "keep fewer Snapshots",
+  live->thread_.start(std::move(queue), {.what = "a snapshot stream",
+                                         .memory_hint = "hold fewer Snapshots",
                                          .take =
                                              [raw = live.get()](const SnapshotWindow& now) {
                                                raw->on_snapshot_(now.keys[0]);

@@ -27,7 +27,8 @@ Status TopicFeed::open_all(LiveSimulation& simulation) {
     for (const Topic* topic : found) {
       const bool is_named = topic->info.name == pattern;
       if (topic->info.is_input && is_named)
-        return Error{ErrorKind::kUsage, fmt::format("topic '{}' is heard, not said", pattern)};
+        return Error{ErrorKind::kUsage,
+                     fmt::format("'{}' is an input topic and cannot be subscribed to", pattern)};
       if (!topic->info.is_input && std::ranges::count(wanted, topic) == 0) wanted.push_back(topic);
     }
   }
@@ -195,7 +196,7 @@ Status TopicFeed::open_snapshots(LiveSimulation& simulation, Outlets outlets) {
   GLOAM_TRY_STATUS(follow(simulation.world().compiled(), reader.get()));
   const auto on_snapshot = [this, reader](const Snapshot& now) {
     if (const Status taken = take_instant(reader.get(), now); !taken.ok())
-      note("topics of instants", taken);
+      note("state topics", taken);
   };
   GLOAM_TRY(auto stream, LiveSnapshots::open(simulation.stream_context(), request, on_snapshot,
                                              first_of(schedules), batch_));

@@ -40,7 +40,7 @@ Status TopicFeed::open_sensor_stream(LiveSimulation& simulation, std::vector<Gat
   LiveSensorsRequest request{
       .required = request_.required, .batch = batch_, .on_end = request_.on_end};
   request.on_lost = [this](const Error& why) {
-    note("topics of sensors", why);
+    note("sensor topics", why);
     if (request_.on_end) request_.on_end(why);
   };
   std::map<std::string, SampleSlot> slots;

@@ -93,12 +93,12 @@ class SceneFinder {
     return Error{
         ErrorKind::kInput,
         fmt::format(
-            "the files of the logged scene are not here: '{}'{}; searched: {}",
+            "cannot find the files of the logged scene: '{}'{}; searched: {}",
             text_.files.front().path,
             text_.files.size() > 1 ? fmt::format(" and {} more", text_.files.size() - 1) : "",
             searched),
         {log_.name(), 0, 0},
-        "give the scene's folder by --folder, or record with --embed"};
+        "give the scene's folder with --folder, or record with --embed"};
   }
 
   // Puts the files together from wherever they are; nothing if one is missing.
@@ -149,11 +149,12 @@ class SceneFinder {
     if (found == embedded_.end()) return std::optional<Bytes8>();
     GLOAM_TRY(McapAttachment attachment, log_.read_attachment(*found->second));
     if (hash_bytes(attachment.data.data(), attachment.data.size()) != file.hash)
-      return Error{ErrorKind::kInput,
-                   fmt::format("the embedded file '{:.80}' is not the one that the log was written "
-                               "with",
-                               file.path),
-                   {log_.name(), 0, 0}};
+      return Error{
+          ErrorKind::kInput,
+          fmt::format(
+              "the embedded file '{:.80}' differs from the file that the log was recorded with",
+              file.path),
+          {log_.name(), 0, 0}};
     return std::optional(std::move(attachment.data));
   }
 

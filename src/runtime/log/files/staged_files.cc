@@ -50,7 +50,7 @@ Result<StagedFiles> StagedFiles::make(const RunText& text) {
     const int levels = levels_up(name);
     if (fs::path(name).is_absolute() || levels > kMostUp)
       return Error{ErrorKind::kInput,
-                   fmt::format("the log's scene names '{:.80}', outside its folder", name)};
+                   fmt::format("the log's scene refers to '{:.80}', outside its folder", name)};
     up = std::max(up, levels);
   }
   uint64_t key = 0;
