@@ -14,7 +14,7 @@ from .errors import UsageError
 def to_text(value: Any, where: str = "value") -> str:
     """A value as written after "=" in a scene file. Raises TypeError: None, or a type that TOML does not have."""
     if value is None:
-        raise TypeError(f"{where}: None is no value; leave the option out instead")
+        raise TypeError(f"{where}: None is not a value; omit the option instead")
     if isinstance(value, bool):
         return "true" if value else "false"
     if hasattr(value, "tolist") and not isinstance(value, (str, bytes)):  # NumPy's numbers and arrays
@@ -35,13 +35,13 @@ def to_text(value: Any, where: str = "value") -> str:
         return "{ " + ", ".join(f"{key_text(k)} = {to_text(v, f'{where}.{k}')}" for k, v in value.items()) + " }"
     if isinstance(value, Sequence):
         return "[" + ", ".join(to_text(v, f"{where}[{i}]") for i, v in enumerate(value)) + "]"
-    raise TypeError(f"{where}: a {type(value).__name__} cannot stand in a scene")
+    raise TypeError(f"{where}: a {type(value).__name__} cannot be used in a scene")
 
 
 def key_text(key: Any) -> str:
     """A key, quoted if TOML requires it."""
     if not isinstance(key, str):
-        raise TypeError(f"a key is a text, not {key!r}")
+        raise TypeError(f"a key must be a string, got {key!r}")
     bare = key and all(c.isascii() and (c.isalnum() or c in "-_") for c in key)
     return key if bare else json.dumps(key)
 
@@ -53,7 +53,7 @@ def from_text(text: str) -> Any:
     try:
         return tomllib.loads(f"v = {text}")["v"]
     except tomllib.TOMLDecodeError as error:
-        raise UsageError(f"'{text}' is no TOML value: {error}") from None
+        raise UsageError(f"'{text}' is not a TOML value: {error}") from None
 
 
 def table_text(tables: Mapping[str, Any]) -> str:

@@ -97,8 +97,8 @@ def _trajectory(source: Any) -> Any:
 def _only_pose_topic(log: Log) -> str:
     topics = list(_core.trajectory_topics(log.file))
     if len(topics) != 1:
-        raise UsageError(f"the log has several topics of poses: {', '.join(topics)}" if topics else "the log has no topic of poses",
-                         hint="name one, as in 'run.mcap:/odom'; a frame of /tf as in 'run.mcap:/tf:robot/base'")
+        raise UsageError(f"the log has several pose topics: {', '.join(topics)}" if topics else "the log has no pose topics",
+                         hint="choose one as in 'run.mcap:/odom'; a frame of /tf is written as 'run.mcap:/tf:robot/base'")
     return str(topics[0])
 
 

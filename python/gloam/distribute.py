@@ -65,18 +65,18 @@ class Report:
 
 def _seeds(count: int, seeds: int | Sequence[int] | None) -> list[int]:
     if isinstance(count, bool) or not isinstance(count, int) or count < 1:
-        raise UsageError(f"a count is a whole number from 1 on, not {count!r}")
+        raise UsageError(f"count must be a whole number of at least 1, got {count!r}")
     if seeds is None or isinstance(seeds, int):
         first = 1 if seeds is None else seeds
         made = list(range(first, first + count))
     else:
         made = [int(seed) for seed in seeds]
     if len(made) != count:
-        raise UsageError(f"{len(made)} seeds are given for {count} tasks")
+        raise UsageError(f"got {len(made)} seeds for {count} tasks")
     if len(set(made)) != count:
-        raise UsageError("a seed is given twice: its tasks would be the same")
+        raise UsageError("a seed is listed twice: its tasks would be the same")
     if min(made) < 0 or max(made) >= 2**64:
-        raise UsageError("a seed is an integer in 0 … 2^64 - 1")
+        raise UsageError("a seed must be an integer from 0 to 2^64 - 1")
     return made
 
 
@@ -102,7 +102,7 @@ def _scene_source(scene: Any) -> tuple[SceneSource, dict[str, str]]:
             "scene": hashlib.sha256(text.encode()).hexdigest()
         }
     if not isinstance(scene, (str, os.PathLike)):
-        raise TypeError(f"a scene is a path, a Scene or a dict, not a {type(scene).__name__}")
+        raise TypeError(f"a scene must be a path, a Scene or a dict, got a {type(scene).__name__}")
     path = Path(scene).absolute()
     return SceneSource(file=str(path)), {"scene": _content(path)}
 
@@ -114,7 +114,7 @@ def _drive_print(drive: Any) -> dict[str, str]:
     if isinstance(drive, Policy):
         return {"policy": _content(drive.path), "policy_settings": _content(drive.settings) if drive.settings else ""}
     if not callable(drive):
-        raise TypeError(f"a gloam.Policy or a function (sim, seed, folder) is expected, not a {type(drive).__name__}")
+        raise TypeError(f"expected a gloam.Policy or a function (sim, seed, folder), got a {type(drive).__name__}")
     try:
         text = inspect.getsource(drive)
     except (OSError, TypeError):
@@ -140,7 +140,7 @@ def _do(
         tasks = []
         for index, seed in enumerate(manifest.seeds):
             values = read_task(manifest.folder(index))
-            error = "" if values is not None else manifest.errors.get(index, "it was not done")
+            error = "" if values is not None else manifest.errors.get(index, "the task was not run")
             tasks.append(Task(index, seed, manifest.folder(index), error, values or {}))
     finally:
         manifest.close()
@@ -150,7 +150,7 @@ def _do(
         raise PartialError(
             f"{len(report.failed)} of {len(tasks)} tasks failed; seed {first.seed}: {first.error}",
             str(manifest.out / "manifest.json"),
-            hint="the others are there; the same call tries these again",
+            hint="the other tasks are done; repeat the same call to retry the failed ones",
         )
     return report
 
@@ -190,7 +190,7 @@ def rollouts(
     source, described = _scene_source(scene)
     described |= _drive_print(drive)
     if not callable(drive) and (duration is None or not 0 < duration < float("inf")):
-        raise UsageError(f"a policy's rollout needs a duration above 0 s, not {duration}")
+        raise UsageError(f"a policy's rollout needs a duration above 0 s, got {duration}")
     job = RolloutJob(
         source,
         drive,

@@ -63,8 +63,8 @@ class Dynamics:
         for actuator, gain, bias in zip(self._actuators, gains, biases, strict=True):
             if gain > _AFFINE or bias > _AFFINE:
                 name = self._sim.world.actuators[actuator]
-                raise UsageError(f"gains: actuator '{name}' is a muscle or has a law of its own, which no factor scales",
-                                 hint='set_live_field("actuator_gain", …) sets its parameters')
+                raise UsageError(f"gains: actuator '{name}' is a muscle or has a user-defined law, which cannot be scaled",
+                                 hint='set its parameters with set_live_field("actuator_gain", …)')
 
 
 def _bodies_below(parents: Any, root: int | None) -> Ids:
@@ -87,9 +87,9 @@ def _runs(ids: Ids) -> list[tuple[int, int]]:
 def _factors(what: str, given: ArrayLike, count: int) -> Doubles:
     factors = np.asarray(given, dtype=np.float64)
     if not (np.isfinite(factors).all() and (factors > 0).all()):
-        raise UsageError(f"{what}: a factor is a positive number, not {given!r}")
+        raise UsageError(f"{what}: a factor must be a positive number, got {given!r}")
     if factors.ndim == 0:
         return np.full(count, float(factors))
     if factors.shape != (count,):
-        raise UsageError(f"{what}: {factors.size} factors are given for {count} elements", hint="one number is for all of them")
+        raise UsageError(f"{what}: got {factors.size} factors for {count} elements", hint="a single number applies to all of them")
     return factors

@@ -34,7 +34,7 @@ class Named(Mapping[str, T], Generic[T]):
     def __getitem__(self, name: str) -> T:
         if name not in self._made:
             if not isinstance(name, str):
-                raise TypeError(f"a {self._what} is asked for by its name, not by {name!r}")
+                raise TypeError(f"a {self._what} is looked up by name, got {name!r}")
             names = list(self._names())
             if name not in names:
                 raise NotFoundError(f"there is no {self._what} '{name}'{self._owner}", hint=_core.suggest_name(name, names))
@@ -233,7 +233,7 @@ class Actuator(Element):
     @control.setter
     def control(self, value: float) -> None:
         if value is None:
-            raise TypeError("None is no control")
+            raise TypeError("None is not a valid control")
         self._sim._core.set_control(self._now(), float(value), lease=self._sim._lease_of_actuator(self.name))
 
     @property
@@ -375,7 +375,7 @@ class Robot(Element):
         root = self._info["root"].id
         joint = int(memory.array("body_jntadr")[root])
         if joint < 0 or memory.array("jnt_type")[joint] != 0:
-            raise UsageError(f"robot '{self.name}' stands fixed: it has no free root")
+            raise UsageError(f"robot '{self.name}' is fixed: its root has no free joint")
         turn = yaw_quaternion(yaw) if quat is None else _sized(quat, 4, "quat")
         handle = next(j for j in self._info["joints"] if j.id == joint)
         self._sim._core.set_joint_state(handle, np.concatenate([_sized(position, 3, "position"), turn]), np.zeros(6))
@@ -408,7 +408,7 @@ class _Picked:
 def _sized(values: ArrayLike, n: int, what: str) -> Doubles:
     array = np.asarray(values, dtype=np.float64).reshape(-1)
     if len(array) != n:
-        raise UsageError(f"{what}: {len(array)} numbers are given, {n} are expected")
+        raise UsageError(f"{what}: expected {n} numbers, got {len(array)}")
     return array
 
 

@@ -115,16 +115,16 @@ class Log:
 
         path = Path(path)
         if path.suffix != ".mp4":
-            raise UsageError(f"{path.name}: a video ends in .mp4", hint="replay() writes all else into a folder")
+            raise UsageError(f"{path.name}: the name of a video must end in .mp4", hint="to write other outputs to a folder, use replay()")
         if path.exists() and not overwrite:
-            raise UsageError(f"{path} is there already", hint="overwrite=True replaces it")
+            raise UsageError(f"{path} already exists", hint="replace it with overwrite=True")
         with tempfile.TemporaryDirectory(dir=path.absolute().parent, prefix=".gloam-") as folder:
             if camera is not None:
                 request["cameras"] = [camera]
             report = self.replay(Path(folder) / "replay", settings, outputs=["video"], progress=progress, **request)
             videos = sorted(Path(report.out).rglob("*.mp4"))
             if not videos:
-                raise UsageError(f"{self.file.name}: no camera is recorded", hint="name one: camera=…")
+                raise UsageError(f"{self.file.name}: no camera is recorded", hint="choose one with camera=…")
             shutil.move(videos[0], path)
         return path
 

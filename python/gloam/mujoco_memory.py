@@ -43,8 +43,8 @@ class MujocoMemory:
         if memory is not None:
             return memory
         wanted = ".".join(_core.mujoco_version().split(".")[:2])
-        raise ImportError(f"sim.model and sim.data need the package mujoco of version {wanted}.x, imported or installed before the "
-                          f"simulation is made: pip install 'mujoco~={wanted}.0'; sim.memory.array(…) works without it")
+        raise ImportError(f"sim.model and sim.data need version {wanted}.x of the package mujoco, imported or installed before the "
+                          f"simulation is created: pip install 'mujoco~={wanted}.0'; sim.memory.array(…) works without it")
 
     def make(self, keeper: Any) -> tuple[int, Any]:
         """(address of a new mjData, what keeps it and its model), for a model of the simulation's, whose arrays `keeper` keeps."""

@@ -36,13 +36,13 @@ def animated_png(pictures: Iterable[ArrayLike], rate: float = 10.0) -> bytes:
     pictures: at least one, as for png(); rate [Hz]: 0 < rate. Raises ValueError.
     """
     if not 0 < rate < 65536:
-        raise ValueError(f"rate: {rate} Hz is not above 0 and below 65536")
+        raise ValueError(f"rate must be above 0 and below 65536 Hz, got {rate}")
     arrays = [_picture(picture) for picture in pictures]
     if not arrays:
-        raise ValueError("there is no picture")
+        raise ValueError("there are no images")
     first = arrays[0]
     if any(a.shape != first.shape or a.dtype != first.dtype for a in arrays):
-        raise ValueError("the pictures differ in size or type")
+        raise ValueError("the images differ in size or type")
     height, width, _ = first.shape
     parts = [_SIGNATURE, _chunk(b"IHDR", _header(first)), _chunk(b"acTL", struct.pack(">II", len(arrays), 0))]
     number = 0
@@ -84,7 +84,7 @@ class Video:
         self.path, self.width = Path(path), width
         size = self.path.stat().st_size
         if size > _MOST_EMBEDDED:
-            raise ValueError(f"{path}: {size >> 20} MiB are too many for a notebook; at most {_MOST_EMBEDDED >> 20}")
+            raise ValueError(f"{path}: {size >> 20} MiB are too large for a notebook; the limit is {_MOST_EMBEDDED >> 20} MiB")
 
     def _repr_html_(self) -> str:
         size = "" if self.width is None else f' width="{self.width}"'
@@ -119,10 +119,10 @@ def _picture(picture: ArrayLike) -> NDArray[Any]:
     if array.ndim == 2:
         array = array[:, :, np.newaxis]
     if array.ndim != 3 or array.shape[2] not in _COLOUR_TYPE or 0 in array.shape:
-        raise ValueError(f"a picture is (H, W) or (H, W, 1 … 4), not {np.shape(picture)}")
+        raise ValueError(f"an image must have the shape (H, W) or (H, W, 1 … 4), got {np.shape(picture)}")
     if array.dtype not in (np.uint8, np.uint16):
         raise ValueError(
-            f"a picture is of uint8 or uint16, not {array.dtype}; notebook.depth_picture() makes one of depth"
+            f"an image must be uint8 or uint16, got {array.dtype}; notebook.depth_picture() converts depth"
         )
     return array
 

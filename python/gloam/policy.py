@@ -34,9 +34,9 @@ def _read_toml(path: Path) -> dict[str, Any]:
     try:
         return tomllib.loads(path.read_text(encoding="utf-8"))
     except OSError as error:
-        raise IoError(f"it cannot be read: {error.strerror}", str(path)) from None
+        raise IoError(f"cannot be read: {error.strerror}", str(path)) from None
     except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
-        raise InputError(f"it is no TOML: {error}", str(path)) from None
+        raise InputError(f"is not valid TOML: {error}", str(path)) from None
 
 
 def read_policy_metadata(path: PathLike) -> dict[str, Any]:
@@ -72,12 +72,12 @@ class Policy:
         if spec.observation_size != network.inputs:
             parts = ", ".join(f"{term.name} {size}" for term, size in zip(spec.terms, spec.term_sizes(), strict=True))
             raise InputError(
-                f"the observation terms give {spec.observation_size} numbers, the network takes {network.inputs}",
+                f"the observation terms have {spec.observation_size} numbers, but the network takes {network.inputs}",
                 place,
                 hint=parts,
             )
         if len(spec.joints) != network.outputs:
-            raise InputError(f"there are {len(spec.joints)} joints, the network gives {network.outputs} numbers", place)
+            raise InputError(f"there are {len(spec.joints)} joints, but the network outputs {network.outputs} numbers", place)
 
     def infer(self, observation: ArrayLike) -> NDArray[np.float64]:
         """Actions (n,) of an observation (m,), or (k, n) of (k, m), as output by the network: not clipped, not
@@ -88,7 +88,7 @@ class Policy:
         array = np.asarray(observation, dtype=np.float32)
         if array.ndim not in (1, 2) or array.shape[-1] != self._network.inputs:
             raise UsageError(
-                f"an observation of {self._network.inputs} numbers is expected, not of shape {array.shape}"
+                f"expected an observation of {self._network.inputs} numbers, got shape {array.shape}"
             )
         if array.ndim == 2:
             rows = [self.infer(row) for row in array]
@@ -109,7 +109,7 @@ class Policy:
         """
         name = robot if isinstance(robot, str) else getattr(robot, "name", None)
         if name is None:
-            raise TypeError(f"a robot or its name is expected, not {robot!r}")
+            raise TypeError(f"expected a robot or its name, got {robot!r}")
         if name and name not in sim.robots:
             sim.robots[name]  # raises, with the nearest name
         return PolicyDriver(self, sim, name)

@@ -20,7 +20,7 @@ def program() -> Path:
         if candidate.is_file():
             return candidate
     raise FileNotFoundError(
-        f"the program gloam is not there: {' or '.join(map(str, candidates))}; ./gloam setup builds it"
+        f"cannot find the gloam program: {' or '.join(map(str, candidates))}; build it with ./gloam setup"
     )
 
 

@@ -135,7 +135,7 @@ def watch(progress: ProgressLike, what: str) -> Iterator[Tell | None]:
         yield progress
         return
     if progress not in (None, True, False):
-        raise TypeError(f"progress is None, True, False or a function, not {progress!r}")
+        raise TypeError(f"progress must be None, True, False or a function, got {progress!r}")
     drawn = None if progress is False else bar(what, always=progress is True)
     try:
         yield drawn

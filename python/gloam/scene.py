@@ -54,7 +54,7 @@ def describe(path: str) -> str:
             if may_be_a_name or isinstance(node.get("additionalProperties"), dict):
                 may_be_a_name = False
                 continue
-            raise NotFoundError(f"there is no option '{path}': no '{part}' is known", hint=_core.suggest_name(part, list(inner)))
+            raise NotFoundError(f"there is no option '{path}': unknown part '{part}'", hint=_core.suggest_name(part, list(inner)))
         node = inner[part]
         may_be_a_name = False
         resolved = _resolve(node, root)
@@ -189,7 +189,7 @@ class Scene:
         Returns its path, "camera.front"."""
         name = options.get("name")
         if name is not None and f"{table}.{name}.name" in self:
-            raise UsageError(f"there is a {table} '{name}' already", hint=f'set its options: scene["{table}.{name}.…"]')
+            raise UsageError(f"a {table} '{name}' already exists", hint=f'set its options with scene["{table}.{name}.…"]')
         value: Any = [options] if _is_list(table) else options
         self._scene = self._scene.overlay_text(_toml.table_text({table: value}), f"add('{table}')")
         return f"{table}.{name}" if name is not None else table
@@ -249,7 +249,7 @@ def as_scene(source: Any) -> Scene:
     if isinstance(source, Mapping):
         return Scene.from_dict(source)
     if source is None:
-        raise TypeError("None is no scene: a path, a Scene, a World or a dict is expected")
+        raise TypeError("expected a path, a Scene, a World or a dict, got None")
     if isinstance(source, str) and "\n" in source:
         return Scene.parse(source)
     return Scene(source)

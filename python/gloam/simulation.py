@@ -53,9 +53,9 @@ class Simulation:
 
     def __init__(self, world: World, seed: int = 1, timestep: float | None = None, pace: Pace = "lockstep", speed: float = 1.0) -> None:
         if not isinstance(world, World):
-            raise TypeError(f"a World is expected, not {world!r}; gloam.load() takes files and scenes")
+            raise TypeError(f"expected a World, got {world!r}; for files and scenes, use gloam.load()")
         if isinstance(seed, bool) or not isinstance(seed, (int, np.integer)) or not 0 <= seed < 2**64:
-            raise UsageError(f"a seed is an integer in 0 … 2^64 - 1, not {seed!r}")
+            raise UsageError(f"a seed must be an integer from 0 to 2^64 - 1, got {seed!r}")
         self._mujoco = MujocoMemory.for_this_process()
         make = None if self._mujoco is None else self._mujoco.make
         self._core = _core.Run.create(world._world, int(seed), 0.0 if timestep is None else float(timestep), pace, float(speed), make)
@@ -185,11 +185,11 @@ class Simulation:
     def run_until(self, time: float | None = None, *, step: int | None = None) -> None:
         """Steps up to a time [s], to the first step at or after it, or to a step."""
         if (time is None) == (step is None):
-            raise UsageError("run_until() takes a time or a step")
+            raise UsageError("run_until() takes either a time or a step")
         if step is None:
             num, den = self._core.step_rate
             if not np.isfinite(time):  # type: ignore[arg-type]
-                raise UsageError(f"a time of {time} s is not finite")
+                raise UsageError(f"time must be finite, got {time} s")
             step = int(np.ceil(float(time) * num / den - 1e-6))  # type: ignore[arg-type]
         self._core.run_until(step)
 
@@ -197,7 +197,7 @@ class Simulation:
         """Steps until the next message of a camera, LiDAR or sensor reaches a reader, and returns it. The first
         message may be from this instant."""
         if not isinstance(source, Source) or source._sim is not self:
-            raise TypeError(f"a camera, LiDAR or sensor of this simulation is expected, not {source!r}")
+            raise TypeError(f"expected a camera, LiDAR or sensor of this simulation, got {source!r}")
         return source._next()
 
     def run(self, pace: Pace | None = None, speed: float = 1.0) -> None:
@@ -222,7 +222,7 @@ class Simulation:
         """Returns to a checkpoint of this or another simulation of the same scene and timestep. Raises PartialError:
         hooks had changed the run."""
         if not isinstance(checkpoint, Checkpoint):
-            raise TypeError(f"a Checkpoint is expected, not {checkpoint!r}")
+            raise TypeError(f"expected a Checkpoint, got {checkpoint!r}")
         self._core.restore(checkpoint._checkpoint)
         self._take_world(World(self._core.world))
 
@@ -305,7 +305,7 @@ class Simulation:
         if not isinstance(message, bytes):
             kinds = {t["name"]: t["type"] for t in self.topics() if t["is_input"]}
             if topic not in kinds:
-                raise UsageError(f"no topic '{topic}' is heard", hint=_core.suggest_name(topic, list(kinds)))
+                raise UsageError(f"no input topic '{topic}'", hint=_core.suggest_name(topic, list(kinds)))
             message = _core.encode_message(kinds[topic], dict(message))
         self._core.publish(topic, message)
 
@@ -382,7 +382,7 @@ class Simulation:
         self.close()
 
     def __reduce__(self) -> Any:
-        raise TypeError("a running Simulation cannot be pickled or copied: send its scene, which can (sim.scene), and load it where it is needed; "
+        raise TypeError("a running Simulation cannot be pickled or copied: send its scene (sim.scene) and load it where it is needed; "
                         "checkpoint() and restore() go back to an instant of the same simulation")
 
     def __repr__(self) -> str:
@@ -409,7 +409,7 @@ def load(source: Any, seed: int | None = None, timestep: float | None = None, pa
     """
     if isinstance(source, World):
         if settings:
-            raise UsageError("a World is compiled: its options cannot be changed", hint="load its scene: world.scene")
+            raise UsageError("the options of a compiled World cannot be changed", hint="load its scene instead: world.scene")
         return Simulation(source, 1 if seed is None else seed, timestep, pace, speed)
     scene = as_scene(source).copy()
     if settings:

@@ -101,7 +101,7 @@ class World:
         return list(self._world.export_mjcf(Path(folder)))
 
     def __reduce__(self) -> Any:
-        raise TypeError("a World cannot be pickled or copied: send its scene, which can (world.scene), and compile() it where it is needed; threads may "
+        raise TypeError("a World cannot be pickled or copied: send its scene (world.scene) and compile() it where it is needed; threads may "
                         "share one World")
 
     def __repr__(self) -> str:

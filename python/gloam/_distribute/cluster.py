@@ -74,7 +74,7 @@ def cluster(address: str | None, workers: int | None) -> Iterator[Any]:
                 object_store_memory=_STORE,
             )
         if any(not node["NodeManagerAddress"].startswith("127.") for node in ray.nodes()):
-            warnings.warn("this version of ray listens on all network cards", stacklevel=4)
+            warnings.warn("this version of ray listens on all network interfaces", stacklevel=4)
     try:
         yield ray
     finally:
@@ -103,7 +103,7 @@ class _Progress:
         here = self.done - self._before
         left = seconds / here * (self._total - self.done) if here else -1.0
         if self._tell(f"{self.done} of {self._total} tasks", self.done / max(self._total, 1), seconds, left) is False:
-            raise PartialError("it was stopped by its progress function", hint="the same call goes on")
+            raise PartialError("stopped by the progress function", hint="repeat the same call to resume")
 
 
 def run_tasks(ray: Any, manifest: Manifest, job: Job, cpus: int, retries: int, tell: Tell) -> None:
@@ -148,7 +148,7 @@ def _send(ray: Any, job: Job) -> Any:
     except Exception as error:  # of any object's own making
         raise UsageError(
             f"the function cannot be sent to workers: {str(error).splitlines()[0]}",
-            hint="it may not hold open files, simulations or locks",
+            hint="it must not hold open files, simulations or locks",
         ) from None
     return ray.put(job)
 

@@ -82,7 +82,7 @@ class RolloutJob:
         if callable(self.drive):
             result = self.drive(sim, seed, folder)
             if result is not None and not isinstance(result, Mapping):
-                raise TypeError(f"the function returns a dict or None, not a {type(result).__name__}")
+                raise TypeError(f"the function must return a dict or None, got a {type(result).__name__}")
             return _plain(result or {})
         robot = self.robot or next(iter(sim.world.robots), "")
         with self.drive.attach(sim, robot) as driver:
@@ -98,13 +98,13 @@ def _plain(result: Mapping[str, Any]) -> dict[str, Any]:
     def convert(value: Any) -> Any:
         if hasattr(value, "tolist"):
             return value.tolist()
-        raise TypeError(f"a {type(value).__name__} is no JSON value")
+        raise TypeError(f"a {type(value).__name__} cannot be written as JSON")
 
     try:
         made: dict[str, Any] = json.loads(json.dumps(dict(result), default=convert, allow_nan=False))
     except (TypeError, ValueError) as error:
         raise UsageError(
-            f"the function's result cannot be written: {error}", hint="write files into the folder it is given"
+            f"the function's result cannot be written: {error}", hint="write files to the folder that is passed to it"
         ) from None
     return made
 

@@ -34,7 +34,7 @@ def write_json(path: Path, value: Any) -> None:
             os.fsync(stream.fileno())
         part.replace(path)
     except OSError as error:
-        raise IoError(f"it cannot be written: {error.strerror}", str(path)) from None
+        raise IoError(f"cannot be written: {error.strerror}", str(path)) from None
 
 
 def read_task(folder: Path) -> dict[str, Any] | None:
@@ -45,7 +45,7 @@ def read_task(folder: Path) -> dict[str, Any] | None:
         return None
     except (OSError, ValueError) as error:
         raise InputError(
-            f"it is damaged: {error}", str(folder / TASK_FILE), hint="remove that folder, it is made again"
+            f"is damaged: {error}", str(folder / TASK_FILE), hint="remove its folder; the task is then run again"
         ) from None
     return made
 
@@ -76,12 +76,12 @@ class Manifest:
             out.mkdir(parents=True, exist_ok=True)
             self._lock = (out / ".lock").open("w", encoding="utf-8")
         except OSError as error:
-            raise IoError(f"the folder cannot be made: {error.strerror}", str(out)) from None
+            raise IoError(f"the folder cannot be created: {error.strerror}", str(out)) from None
         try:
             fcntl.flock(self._lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except OSError:
             self._lock.close()
-            raise UsageError(f"another call works on {out} now") from None
+            raise UsageError(f"another call is using {out}") from None
         try:
             self._open(overwrite)
         except BaseException:
@@ -94,17 +94,17 @@ class Manifest:
             for task in known.get("tasks", []):
                 shutil.rmtree(self.out / Path(str(task["folder"])).name, ignore_errors=True)
         elif known is not None and known.get("print") != self._print:
-            raise UsageError(f"{self.out} holds tasks of another request", hint="give another out, or overwrite=True")
+            raise UsageError(f"{self.out} contains tasks of another request", hint="choose another out, or pass overwrite=True")
         self.remove_parts()
         for index, seed in enumerate(self.seeds):
             task = read_task(self.folder(index))
             if task is not None and task.get("seed") != seed:
                 raise UsageError(
-                    f"{self.folder(index)} was made with seed {task.get('seed')}, not {seed}",
-                    hint="give another out, or overwrite=True",
+                    f"{self.folder(index)} was created with seed {task.get('seed')}, not {seed}",
+                    hint="choose another out, or pass overwrite=True",
                 )
             if task is None and self.folder(index).exists():
-                raise UsageError(f"{self.folder(index)} is there and no task made it", hint="give another out")
+                raise UsageError(f"{self.folder(index)} already exists and was not created by a task", hint="choose another out")
         self.write()
 
     def _read(self) -> dict[str, Any] | None:
@@ -114,9 +114,9 @@ class Manifest:
         except FileNotFoundError:
             return None
         except (OSError, ValueError) as error:
-            raise InputError(f"it is damaged: {error}", str(path), hint="give another out") from None
+            raise InputError(f"is damaged: {error}", str(path), hint="choose another out") from None
         if not isinstance(made, dict) or not isinstance(made.get("tasks"), list):
-            raise InputError("it is no list of tasks", str(path), hint="give another out")
+            raise InputError("is not a list of tasks", str(path), hint="choose another out")
         return made
 
     def remove_parts(self) -> None:

@@ -34,8 +34,8 @@ def _steps_per_action(rate: float, timestep: float) -> int:
     whole = max(1, round(steps))
     if abs(steps - whole) > 1e-6 * steps:
         raise UsageError(
-            f"a policy of {rate:g} Hz acts every {steps:g} steps of {timestep:g} s, which is no whole number",
-            hint=f"take a timestep of {1.0 / (rate * whole):g} s",
+            f"a policy of {rate:g} Hz would act every {steps:g} steps of {timestep:g} s, which is not a whole number",
+            hint=f"use a timestep of {1.0 / (rate * whole):g} s",
         )
     return whole
 
@@ -60,7 +60,7 @@ class PolicyDriver:
         self._begin(math.nan)
         drivers = _drivers.setdefault(sim, [])
         if any(other.robot == robot for other in drivers):
-            raise UsageError(f"robot '{robot}' is driven by a policy already", hint="detach() that one before")
+            raise UsageError(f"robot '{robot}' is already driven by a policy", hint="detach() that policy first")
         drivers.append(self)
         sim_ref = self._sim
         sim.on_step(lambda _memory: _update_all(sim_ref))
@@ -89,7 +89,7 @@ class PolicyDriver:
         values = []
         for axis, value in zip(AXES, (vx, vy, yaw_rate), strict=True):
             if value is None or not math.isfinite(value):
-                raise UsageError(f"a commanded {axis} is a finite number, not {value}")
+                raise UsageError(f"a commanded {axis} must be a finite number, got {value}")
             low, high = self.policy.spec.command_ranges.get(axis, (-math.inf, math.inf))
             values.append(min(max(float(value), low), high))
         self._command = np.array(values)
@@ -100,7 +100,7 @@ class PolicyDriver:
         positions."""
         sim = self._sim()
         if sim is None:
-            raise UsageError("the simulation of this policy is gone")
+            raise UsageError("the simulation of this policy no longer exists")
         robot, spec = sim.robots[self.robot], self.policy.spec
         robot.place(position, yaw)
         for name, angle in zip(self._io.joint_names, spec.default_positions, strict=True):

@@ -23,7 +23,7 @@ def _numbers(text: str, key: str, file: str, separator: str = ",") -> list[float
     try:
         return [float(part) for part in text.split(separator)] if text.strip() else []
     except ValueError:
-        raise InputError(f"metadata '{key}' is no list of numbers: {text[:60]!r}", file) from None
+        raise InputError(f"metadata '{key}' is not a list of numbers: {text[:60]!r}", file) from None
 
 
 def _entries(metadata: Mapping[str, str], key: str, count: int, file: str) -> list[list[float]] | None:
@@ -32,14 +32,14 @@ def _entries(metadata: Mapping[str, str], key: str, count: int, file: str) -> li
         return None
     entries = [_numbers(part, key, file, ";") for part in _split(metadata[key])]
     if len(entries) != count or not all(entries):
-        raise InputError(f"metadata '{key}' has {len(entries)} entries, there are {count} observation terms", file)
+        raise InputError(f"metadata '{key}' has {len(entries)} entries for {count} observation terms", file)
     return entries
 
 
 def _length(number: float, name: str, file: str) -> int:
     """Length of a history, which mjlab writes as a number with decimals; its 0 means none."""
     if not number.is_integer():
-        raise InputError(f"observation term '{name}' has a history of {number:g} observations", file)
+        raise InputError(f"observation term '{name}' has an invalid history of {number:g} observations", file)
     return max(1, int(number))
 
 
@@ -88,7 +88,7 @@ def _json(metadata: Mapping[str, str], key: str, file: str) -> Any:
     try:
         return json.loads(metadata[key])
     except json.JSONDecodeError as error:
-        raise InputError(f"metadata '{key}' is no JSON: {error}", file) from None
+        raise InputError(f"metadata '{key}' is not valid JSON: {error}", file) from None
 
 
 def _holosoma(metadata: Mapping[str, str], file: str) -> dict[str, Any]:
@@ -116,10 +116,10 @@ def merge(base: Mapping[str, Any], over: Mapping[str, Any], file: str) -> dict[s
     """Settings of the metadata, overridden by a TOML: keys of [policy] one by one, [[observation]] as a whole."""
     for key in over:
         if key not in ("policy", "observation"):
-            raise InputError(f"there is no [{key}] in a policy's TOML", file, hint="[policy] and [[observation]]")
+            raise InputError(f"a policy's TOML cannot contain [{key}]", file, hint="use [policy] and [[observation]]")
     policy, observation = over.get("policy", {}), over.get("observation", base.get("observation", []))
     if not isinstance(policy, Mapping):
-        raise InputError("policy is a table: [policy]", file)
+        raise InputError("policy must be a table: [policy]", file)
     if not isinstance(observation, list):
-        raise InputError("observation is a list of tables: [[observation]]", file)
+        raise InputError("observation must be a list of tables: [[observation]]", file)
     return {"policy": {**base.get("policy", {}), **policy}, "observation": observation}

@@ -20,7 +20,7 @@ def _openvino() -> Any:
         return importlib.import_module("openvino")
     except ImportError as error:
         raise ImportError(
-            "gloam.Policy runs networks through the package 'openvino', which is not installed: pip install openvino"
+            "gloam.Policy runs networks with the package 'openvino', which is not installed: pip install openvino"
         ) from error
 
 
@@ -34,7 +34,7 @@ class Network:
     def __init__(self, path: Path) -> None:
         openvino = _openvino()
         if not path.is_file():
-            raise IoError("there is no such file", str(path))
+            raise IoError("no such file", str(path))
         check_declared(path)
         core = openvino.Core()
         try:
@@ -42,13 +42,13 @@ class Network:
         except RuntimeError as error:
             lines = [line for line in str(error).splitlines() if line.strip()]
             raise InputError(
-                f"it is no network that OpenVINO reads: {lines[-1] if lines else error}", str(path)
+                f"OpenVINO cannot read the network: {lines[-1] if lines else error}", str(path)
             ) from None
         self.metadata = self._metadata(model)
         if len(model.inputs) != 1:
             listed = ", ".join(port.get_any_name() for port in model.inputs)
             raise UnsupportedError(
-                f"the network takes {len(model.inputs)} inputs ({listed}), a policy takes its observation alone",
+                f"the network takes {len(model.inputs)} inputs ({listed}), but a policy has the observation as its only input",
                 str(path),
                 hint="policies that track a motion by its time are not supported",
             )
@@ -78,7 +78,7 @@ class Network:
             raise InputError(f"the network's input has the shape {shape}, not (1, observation)", str(path))
         if str(model.inputs[0].element_type.to_string()) != "f32":
             raise InputError(
-                f"the network's input is of {model.inputs[0].element_type.to_string()}, not f32", str(path)
+                f"the network's input has the type {model.inputs[0].element_type.to_string()}, not f32", str(path)
             )
         model.reshape([1, shape[1].get_length()])
         return int(shape[1].get_length())

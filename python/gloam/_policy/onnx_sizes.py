@@ -93,7 +93,7 @@ class _Model:
         return InputError(
             f"tensor '{name[:80]}' {what}",
             str(self.path),
-            hint=f"a policy's tensors may have {MOST_TENSOR_BYTES >> 20} MiB together",
+            hint=f"all tensors of a policy together can have at most {MOST_TENSOR_BYTES >> 20} MiB",
         )
 
     def add(self, name: str, dims: list[int], data_type: int, counts: bool) -> None:
@@ -103,11 +103,11 @@ class _Model:
                 raise self.refuse(name, f"has a negative size: {dims}")
             size *= dim
         if size > MOST_TENSOR_BYTES:
-            raise self.refuse(name, f"of the size {dims} would take {size >> 20} MiB")
+            raise self.refuse(name, f"of size {dims} would take {size >> 20} MiB")
         if counts:
             self.bytes += size
             if self.bytes > MOST_TENSOR_BYTES:
-                raise self.refuse(name, f"and those before it would take {self.bytes >> 20} MiB")
+                raise self.refuse(name, f"and the tensors before it would take {self.bytes >> 20} MiB")
 
     def tensor(self, data: memoryview) -> None:
         dims: list[int] = []
@@ -133,9 +133,9 @@ class _Model:
         inside = location and not parts.is_absolute() and ".." not in parts.parts
         file = self.path.parent / location
         if not inside or not file.is_file() or not file.resolve().is_relative_to(self.path.parent.resolve()):
-            raise self.refuse(name, f"is in the file {location[:80]!r}, which is not in the network's folder")
+            raise self.refuse(name, f"is in the file {location[:80]!r}, outside the network's folder")
         if file.stat().st_size > MOST_FILE_BYTES:
-            raise self.refuse(name, f"is in a file of {file.stat().st_size >> 20} MiB")
+            raise self.refuse(name, f"is in a file that has {file.stat().st_size >> 20} MiB")
 
     def value_info(self, data: memoryview) -> None:
         name, dims, data_type = "", list[int](), 1
@@ -189,7 +189,7 @@ class _Model:
         for number, value in _fields(data):
             if number == 4 and _text(value) in _REPEATING:
                 raise UnsupportedError(
-                    f"the network has a {_text(value)}: its memory and time would depend on values",
+                    f"the network has a {_text(value)}: its memory and run time would depend on values",
                     str(self.path),
                     hint="export the policy for one observation, without loops",
                 )
@@ -198,7 +198,7 @@ class _Model:
 
     def graph(self, data: memoryview, depth: int = 0) -> None:
         if depth > _MOST_DEPTH:
-            raise InputError(f"the network has graphs within graphs, more than {_MOST_DEPTH} deep", str(self.path))
+            raise InputError(f"the network nests graphs more than {_MOST_DEPTH} deep", str(self.path))
         for number, value in _fields(data):
             if isinstance(value, int):
                 continue
@@ -218,10 +218,10 @@ def check_declared(path: Path) -> None:
     try:
         size = path.stat().st_size
         if size > MOST_FILE_BYTES:
-            raise InputError(f"it has {size >> 20} MiB; a policy may have {MOST_FILE_BYTES >> 20} MiB", str(path))
+            raise InputError(f"has {size >> 20} MiB; a policy can have at most {MOST_FILE_BYTES >> 20} MiB", str(path))
         data = memoryview(path.read_bytes())
     except OSError as error:
-        raise IoError(f"it cannot be read: {error.strerror}", str(path)) from None
+        raise IoError(f"cannot be read: {error.strerror}", str(path)) from None
     model = _Model(path)
     try:
         for number, value in _fields(data):
@@ -234,7 +234,7 @@ def check_declared(path: Path) -> None:
                     if part == 7 and not isinstance(node, int):
                         model.node(node, 0)
     except _Damaged:
-        raise InputError("it is no network that OpenVINO reads: it is damaged or no ONNX file", str(path)) from None
+        raise InputError("OpenVINO cannot read the network: the file is damaged or not an ONNX file", str(path)) from None
 
 
 def check_operations(model: Any, path: Path) -> None:
@@ -248,7 +248,7 @@ def check_operations(model: Any, path: Path) -> None:
                 raise InputError(
                     f"operation '{operation.get_friendly_name()[:80]}' has no fixed size: {shape}",
                     str(path),
-                    hint="export the policy for one observation: all sizes but the batch fixed",
+                    hint="export the policy for one observation: all sizes except the batch must be fixed",
                 )
             count = 1
             for dim in shape:
@@ -257,6 +257,6 @@ def check_operations(model: Any, path: Path) -> None:
             if total > MOST_TENSOR_BYTES:
                 raise InputError(
                     f"its operations would take over {MOST_TENSOR_BYTES >> 20} MiB, "
-                    f"'{operation.get_friendly_name()[:80]}' with the size {shape}",
+                    f"'{operation.get_friendly_name()[:80]}' with shape {shape}",
                     str(path),
                 )

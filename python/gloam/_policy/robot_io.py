@@ -40,7 +40,7 @@ def _find(wanted: list[str], names: list[str], what: str, robot: str) -> NDArray
             + f"{what}s of the robot: "
             + (", ".join(name for name in names if name.startswith(f"{robot}/") or not robot) or "none")
         )
-        raise NotFoundError(f"robot '{robot}' has no {what} {', '.join(missing)}, which the policy drives", hint=hint)
+        raise NotFoundError(f"robot '{robot}' has no {what} {', '.join(missing)}, which the policy requires", hint=hint)
     return np.array([names.index(name) for name in wanted], dtype=np.intp)
 
 
@@ -86,7 +86,7 @@ class RobotIo:
             if term.name in ("base_lin_vel", "base_ang_vel", "projected_gravity") and not term.sensor:
                 raise UnsupportedError(
                     f"the policy observes '{term.name}', but the robot has no floating base",
-                    hint='give its [[robot]] base = "free", or the term a sensor',
+                    hint='set base = "free" in its [[robot]], or give the term a sensor',
                 )
 
     def _find_actuators(self, joints: NDArray[np.intp], names: list[str]) -> None:
@@ -99,7 +99,7 @@ class RobotIo:
             if len(found) != 1:
                 raise NotFoundError(
                     f"joint '{names[joint]}' has {'no actuator' if not len(found) else 'several actuators'}",
-                    hint="a policy drives each of its joints by one motor or position servo; docs/policies.md adds them",
+                    hint="a policy drives each joint with one motor or position servo; docs/policies.md shows how to add them",
                 )
             at.append(int(found[0]))
         self._actuators = np.array(at, dtype=np.intp)
@@ -115,7 +115,7 @@ class RobotIo:
             ):
                 raise UnsupportedError(
                     f"the actuator of '{self._spec.joints[i]}' is neither a motor nor a position servo",
-                    hint="filters, muscles and other dynamics are not driven by policies",
+                    hint="policies cannot drive filters, muscles and other actuator dynamics",
                 )
         self._gain, self._bias = gains[:, 0], biases[:, :3] * (memory.array("actuator_biastype")[at] == 1)[:, None]
         self._has_bias, self._has_limit = bool(self._bias.any()), bool(np.isfinite(self._spec.torque_limit).any())
@@ -140,7 +140,7 @@ class RobotIo:
         for (name, term), at in zip(wanted.items(), _find(full, names, "sensor", robot), strict=True):
             start, size = int(self.memory.array("sensor_adr")[at]), int(self.memory.array("sensor_dim")[at])
             if size != term_info(term.name).size(len(self._spec.joints)):
-                raise UnsupportedError(f"sensor '{name}' has {size} numbers, which is not the size of '{term.name}'")
+                raise UnsupportedError(f"sensor '{name}' has {size} numbers, which does not match the size of '{term.name}'")
             self._sensors[name] = data[start : start + size]
 
     def state(self) -> RobotState:

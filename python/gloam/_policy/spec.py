@@ -72,7 +72,7 @@ class PolicySpec:
 
 def _number(value: Any, what: str, file: str) -> float:
     if isinstance(value, bool) or not isinstance(value, (int, float)):
-        raise InputError(f"{what} is a number, not {value!r}", file)
+        raise InputError(f"{what} must be a number, got {value!r}", file)
     return float(value)
 
 
@@ -80,7 +80,7 @@ def _finite(value: Any, what: str, file: str, above: float = -math.inf) -> float
     number = _number(value, what, file)
     if not math.isfinite(number) or number <= above:
         bound = f" above {above:g}" if math.isfinite(above) else ""
-        raise InputError(f"{what} is a finite number{bound}, not {number:g}", file)
+        raise InputError(f"{what} must be a finite number{bound}, got {number:g}", file)
     return number
 
 
@@ -89,7 +89,7 @@ def _range(value: Any, what: str, file: str) -> tuple[float, float]:
     if isinstance(value, (int, float)) and not isinstance(value, bool):
         value = [-abs(value), abs(value)]
     if not isinstance(value, Sequence) or isinstance(value, str) or len(value) != 2:
-        raise InputError(f"{what} is [low, high], not {value!r}", file)
+        raise InputError(f"{what} must be [low, high], got {value!r}", file)
     low, high = (_number(v, what, file) for v in value)
     if not low <= high:
         raise InputError(f"{what}: low {low:g} is not below high {high:g}", file)
@@ -107,7 +107,7 @@ def per_joint(value: Any, joints: Sequence[str], what: str, file: str, default: 
         return _by_pattern(value, joints, what, file, default)
     if isinstance(value, Sequence) and not isinstance(value, str):
         if len(value) != n:
-            raise InputError(f"{what} has {len(value)} numbers, the policy has {n} joints", file)
+            raise InputError(f"{what} has {len(value)} numbers for {n} joints of the policy", file)
         return np.array([_finite(v, f"{what} of {joints[i]}", file) for i, v in enumerate(value)])
     return np.full(n, _finite(value, what, file))
 
@@ -120,9 +120,9 @@ def _by_pattern(table: Mapping[str, Any], joints: Sequence[str], what: str, file
             try:
                 fits = [i for i, name in enumerate(joints) if re.fullmatch(pattern, name)]
             except re.error as error:
-                raise InputError(f"{what}: '{pattern}' is no regular expression: {error}", file) from None
+                raise InputError(f"{what}: '{pattern}' is not a valid regular expression: {error}", file) from None
             if not fits:
-                raise InputError(f"{what}: '{pattern}' fits no joint", file, hint="joints: " + ", ".join(joints))
+                raise InputError(f"{what}: '{pattern}' matches no joint", file, hint="joints: " + ", ".join(joints))
             for i in fits:
                 if not exact or joints[i] == pattern:
                     numbers[i] = number
@@ -140,7 +140,7 @@ def _check_keys(table: Mapping[str, Any], known: Sequence[str], where: str, file
 
 def _term(table: Any, joints: int, file: str) -> Term:
     if not isinstance(table, Mapping) or not isinstance(table.get("term"), str):
-        raise InputError("an [[observation]] needs a term", file, hint='term = "base_ang_vel"')
+        raise InputError("an [[observation]] needs a term", file, hint='for example term = "base_ang_vel"')
     _check_keys(table, TERM_KEYS, "[[observation]]", file)
     info = term_info(table["term"], file)
     what = f"observation term '{table['term']}'"
@@ -148,22 +148,22 @@ def _term(table: Any, joints: int, file: str) -> Term:
     numbers = scale if isinstance(scale, Sequence) and not isinstance(scale, str) else [scale]
     size = info.size(joints)
     if len(numbers) not in (1, size):
-        raise InputError(f"{what}: scale has {len(numbers)} numbers, the term has {size}", file)
+        raise InputError(f"{what}: scale has {len(numbers)} numbers, but the term has {size}", file)
     history = table.get("history", 1)
     if isinstance(history, bool) or not isinstance(history, int) or not 1 <= history <= 1000:
-        raise InputError(f"{what}: history is a whole number from 1 to 1000, not {history!r}", file)
+        raise InputError(f"{what}: history must be a whole number from 1 to 1000, got {history!r}", file)
     sensor = table.get("sensor", "")
     if not isinstance(sensor, str):
-        raise InputError(f"{what}: sensor is a name, not {sensor!r}", file)
+        raise InputError(f"{what}: sensor must be a name, got {sensor!r}", file)
     clip = _range(table["clip"], f"{what}: clip", file) if "clip" in table else (-math.inf, math.inf)
     return Term(info.name, tuple(_finite(v, f"{what}: scale", file) for v in numbers), clip, history, sensor)
 
 
 def _names(value: Any, file: str) -> tuple[str, ...]:
     if not isinstance(value, Sequence) or isinstance(value, str) or not all(isinstance(v, str) for v in value):
-        raise InputError(f"joints is a list of names, not {value!r}", file)
+        raise InputError(f"joints must be a list of names, got {value!r}", file)
     if len(set(value)) != len(value):
-        raise InputError(f"joints names {next(v for v in value if list(value).count(v) > 1)} twice", file)
+        raise InputError(f"joints lists {next(v for v in value if list(value).count(v) > 1)} twice", file)
     return tuple(value)
 
 
@@ -175,15 +175,15 @@ def _require(policy: Mapping[str, Any], observation: Sequence[Any], file: str) -
     parts += [] if observation else ["[[observation]] terms"]
     if parts:
         raise InputError(
-            f"the network's metadata does not tell {' and '.join(parts)}",
+            f"the network's metadata does not contain {' and '.join(parts)}",
             file,
-            hint='write them into a TOML: gloam.Policy("x.onnx", "x.toml"), docs/policies.md',
+            hint='write them to a TOML file: gloam.Policy("x.onnx", "x.toml"), docs/policies.md',
         )
 
 
 def _command_ranges(value: Any, file: str) -> dict[str, tuple[float, float]]:
     if not isinstance(value, Mapping):
-        raise InputError(f"command_ranges is a table of {', '.join(AXES)}, not {value!r}", file)
+        raise InputError(f"command_ranges must be a table of {', '.join(AXES)}, got {value!r}", file)
     _check_keys(value, AXES, "command_ranges", file)
     return {axis: _range(limits, f"command_ranges.{axis}", file) for axis, limits in value.items()}
 
@@ -209,10 +209,10 @@ def build_spec(settings: Mapping[str, Any], file: str) -> PolicySpec:
             raise InputError(f"{key} of {joints[int(np.argmin(numbers[key]))]} is negative", file)
     start = policy.get("history_start", "repeat")
     if start not in ("repeat", "zeros"):
-        raise InputError(f'history_start is "repeat" or "zeros", not {start!r}', file)
+        raise InputError(f'history_start must be "repeat" or "zeros", got {start!r}', file)
     renamed = policy.get("model_joints", {})
     if not isinstance(renamed, Mapping):
-        raise InputError("model_joints is a table {policy's name = model's name}", file)
+        raise InputError("model_joints must be a table {policy's name = model's name}", file)
     _check_keys(renamed, joints, "model_joints", file)
     return PolicySpec(
         joints=joints,

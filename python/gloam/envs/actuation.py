@@ -18,7 +18,7 @@ class DelayedActions:
 
     def __init__(self, delay: tuple[int, int]) -> None:
         if not 0 <= delay[0] <= delay[1]:
-            raise ValueError(f"an action delay of {delay} physics steps is no range from 0 upwards")
+            raise ValueError(f"an action delay must be a range of physics steps of at least 0, got {delay}")
         self._range = delay
         self._delay = delay[0]
         self._now = 0

@@ -64,7 +64,7 @@ class DeclaredTask(Task):
         if not observations:
             raise ValueError("an environment needs an observation")
         if not 0 < control_interval < 1e6:
-            raise ValueError(f"control_interval is {control_interval}, a time above 0 s is expected")
+            raise ValueError(f"control_interval must be a time above 0 s, got {control_interval}")
         self._scene = scene
         self.layout = layout
         self.control_interval = control_interval
@@ -122,7 +122,7 @@ class _DeclaredWorld(TaskWorld):
 
     def begin(self, rng: np.random.Generator, options: Mapping[str, Any]) -> None:
         if options:
-            raise ValueError(f"this environment has no options of reset, given are {sorted(options)}")
+            raise ValueError(f"this environment has no reset options, got {sorted(options)}")
         if self._task.uses_metrics:
             self._metrics.begin()
         for source in self._sources.values():
@@ -223,7 +223,7 @@ def _parsed(
     if given["observations"] is not None:
         return DeclaredTask(scene, **given), EnvSettings(**settings), None
     if not isinstance(scene, (str, Path)):
-        raise ValueError("observations are missing; only a TOML file of an environment brings its own")
+        raise ValueError("observations are missing; only the TOML file of an environment can define them")
     with open(scene, "rb") as file:
         try:
             tables = tomllib.load(file)
@@ -231,9 +231,9 @@ def _parsed(
             raise ValueError(f"{scene}: {error}") from error
     unknown = sorted(set(tables) - set(_KEYS))
     if unknown:
-        raise ValueError(f"{scene}: an environment has no '{unknown[0]}', but {', '.join(_KEYS)}")
+        raise ValueError(f"{scene}: an environment has no key '{unknown[0]}'; it has {', '.join(_KEYS)}")
     if "scene" not in tables:
-        raise ValueError(f"{scene}: 'scene' is missing, the file of the scene")
+        raise ValueError(f"{scene}: the key 'scene' is missing: the scene file")
     steps = tables.pop("max_episode_steps", None)
     own = EnvSettings(**{**tables.pop("settings", {}), **settings})
     tables["scene"] = Path(scene).parent / tables["scene"]

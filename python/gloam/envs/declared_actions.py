@@ -39,10 +39,10 @@ class Actuation(ABC):
                 high = np.broadcast_to(np.asarray(self.high, dtype=np.float64), high.shape)
         except ValueError as error:
             raise ValueError(
-                f"limits of the actions of '{self.robot}': {len(low)} numbers each are expected"
+                f"limits of the actions of '{self.robot}': expected {len(low)} numbers each"
             ) from error
         if not (np.isfinite(low).all() and np.isfinite(high).all() and (low <= high).all()):
-            raise ValueError(f"limits of the actions of '{self.robot}' are not known: give low and high")
+            raise ValueError(f"limits of the actions of '{self.robot}' are unknown: give low and high")
         return low, high
 
 
@@ -108,20 +108,20 @@ def parse_actions(tables: object) -> list[Actuation]:
         return []
     listed: Any = [tables] if isinstance(tables, Mapping) else tables
     if not isinstance(listed, Sequence) or isinstance(listed, str):
-        raise ValueError(f"actions are a table or a list of tables, not {tables!r}")
+        raise ValueError(f"actions must be a table or a list of tables, got {tables!r}")
     return [_parsed(table) for table in listed]
 
 
 def _parsed(table: object) -> Actuation:
     if not isinstance(table, Mapping):
-        raise ValueError(f"an action is a table, not {table!r}")
+        raise ValueError(f"an action must be a table, got {table!r}")
     kinds = [key for key in table if key in (*_KINDS, "function")]
     if len(kinds) != 1:
-        raise ValueError(f"an action is one of {', '.join(_KINDS)}, function; given are {sorted(table)}")
+        raise ValueError(f"an action must have one of {', '.join(_KINDS)}, function; got {sorted(table)}")
     kind = kinds[0]
     for key in table:
         if key not in (kind, "low", "high"):
-            raise ValueError(f"an action has no '{key}', but low, high")
+            raise ValueError(f"an action has no key '{key}'; it has low, high")
     low, high = table.get("low"), table.get("high")
     if kind == "function":
         return FunctionActuation("function", low, high, table[kind])

@@ -86,18 +86,18 @@ def parse_observation(name: str, table: object) -> ObservationSpec:
     if isinstance(table, str):
         table = {"metric": table}
     if not isinstance(table, Mapping):
-        raise ValueError(f"observation '{name}' is a table or a function, not {table!r}")
+        raise ValueError(f"observation '{name}' must be a table or a function, got {table!r}")
     kinds = [key for key in table if key in _KINDS]
     if len(kinds) != 1:
-        raise ValueError(f"observation '{name}' is one of {', '.join(_KINDS)}; given are {sorted(table)}")
+        raise ValueError(f"observation '{name}' must have one of {', '.join(_KINDS)}; got {sorted(table)}")
     kind = kinds[0]
     for key in table:
         if key not in (kind, *_KINDS[kind], *_STAGES):
             raise ValueError(
-                f"observation '{name}', of a {kind}, has no '{key}', but {', '.join((*_KINDS[kind], *_STAGES))}"
+                f"observation '{name}' of a {kind} has no key '{key}'; it has {', '.join((*_KINDS[kind], *_STAGES))}"
             )
     if kind == "lidar" and "columns" not in table:
-        raise ValueError(f"observation '{name}', of a lidar, needs its columns")
+        raise ValueError(f"observation '{name}' of a lidar needs the key columns")
     stages = {key: table[key] for key in _STAGES if key in table and key != "noise"}
     for key in ("clip", "delay", "scale"):
         if isinstance(stages.get(key), list):
@@ -153,9 +153,9 @@ def parse_rewards(tables: object) -> list[RewardSpec]:
     for table in _listed(tables, "reward"):
         spec = RewardSpec(**_keys(table, "reward", ("metric", "function", "weight", "change", "constant")))
         if (spec.metric is None and spec.function is None) == (spec.constant == 0.0):
-            raise ValueError(f"a reward has a metric, a function or a constant: {table!r}")
+            raise ValueError(f"a reward must have either a metric, a function or a constant: {table!r}")
         if not (math.isfinite(spec.weight) and math.isfinite(spec.constant)):
-            raise ValueError(f"a reward's weight and constant are finite: {table!r}")
+            raise ValueError(f"a reward's weight and constant must be finite: {table!r}")
         made.append(spec)
     return made
 
@@ -166,9 +166,9 @@ def parse_terminations(tables: object) -> list[TerminationSpec]:
     for table in _listed(tables, "termination"):
         spec = TerminationSpec(**_keys(table, "termination", ("metric", "function", "above", "below", "success")))
         if (spec.metric is None) == (spec.function is None):
-            raise ValueError(f"a termination has a metric or a function: {table!r}")
+            raise ValueError(f"a termination must have either a metric or a function: {table!r}")
         if spec.metric is not None and math.isinf(spec.above) and math.isinf(spec.below):
-            raise ValueError(f"the termination by '{spec.metric}' needs a limit, above or below")
+            raise ValueError(f"the termination by '{spec.metric}' needs a limit: above or below")
         made.append(spec)
     return made
 
@@ -180,15 +180,15 @@ def _listed(tables: object, what: str) -> Sequence[object]:
         return [tables]
     if isinstance(tables, Sequence) and not isinstance(tables, str):
         return tables
-    raise ValueError(f"{what} is a list of tables, not {tables!r}")
+    raise ValueError(f"{what} must be a list of tables, got {tables!r}")
 
 
 def _keys(table: object, what: str, known: Sequence[str]) -> dict[str, Any]:
     if callable(table):
         return {"function": table}
     if not isinstance(table, Mapping):
-        raise ValueError(f"a {what} is a table, not {table!r}")
+        raise ValueError(f"a {what} must be a table, got {table!r}")
     for key in table:
         if key not in known:
-            raise ValueError(f"a {what} has no '{key}', but {', '.join(known)}")
+            raise ValueError(f"a {what} has no key '{key}'; it has {', '.join(known)}")
     return {str(key): value for key, value in table.items()}

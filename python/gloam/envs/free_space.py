@@ -44,7 +44,7 @@ class FreeSpace:
         boxes, floors = _boxes(world, ignore, heights)
         corners = (floors if len(floors) > 0 else boxes).reshape(-1, 2)
         if len(corners) == 0:
-            raise gloam.UsageError("the scene has no walls: where its floor ends is not known")
+            raise gloam.UsageError("the scene has no walls, so the extent of its floor is unknown")
         low, high = corners.min(axis=0), corners.max(axis=0)
         columns, rows = (np.ceil((high - low) / cell).astype(int) + 1).tolist()
         x = low[0] + cell * np.arange(columns)
@@ -69,7 +69,7 @@ class FreeSpace:
             if region.sum() > best.sum():
                 best = region
         if not best.any():
-            raise gloam.UsageError("there is no free place in the scene")
+            raise gloam.UsageError("the scene has no free space")
         self.blocked = ~best
 
     def index(self, point: Array) -> tuple[int, int]:
@@ -129,7 +129,7 @@ class FreeSpace:
             usable = usable & (field >= reach[0]) & (field <= reach[1])
         cells = np.argwhere(usable)
         if len(cells) == 0:
-            raise gloam.UsageError(f"no free place is {reach[0]} to {reach[1]} m from the goal")
+            raise gloam.UsageError(f"there is no free place {reach[0]} to {reach[1]} m from the goal")
         row, column = cells[rng.integers(len(cells))]
         return self.origin + self.cell * np.array([column, row], dtype=np.float64)
 

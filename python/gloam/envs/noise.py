@@ -46,7 +46,7 @@ class Gaussian(Noise):
         for name in ("std", "relative", "bias_std"):
             value = getattr(self, name)
             if not (math.isfinite(value) and value >= 0):
-                raise ValueError(f"noise: {name} is {value}, a standard deviation is finite and not negative")
+                raise ValueError(f"noise: {name} must be finite and not negative, got {value}")
 
     def sample(self, rng: np.random.Generator, value: Array) -> Array:
         return rng.standard_normal(value.shape) * (self.std + self.relative * np.abs(value))
@@ -65,7 +65,7 @@ class Uniform(Noise):
 
     def __post_init__(self) -> None:
         if not (math.isfinite(self.low) and math.isfinite(self.high) and self.low <= self.high):
-            raise ValueError(f"noise: uniform from {self.low} to {self.high} is no range")
+            raise ValueError(f"noise: uniform from {self.low} to {self.high} is not a range")
 
     def sample(self, rng: np.random.Generator, value: Array) -> Array:
         return rng.uniform(self.low, self.high, value.shape)
@@ -88,5 +88,5 @@ def parse_noise(value: object) -> Noise | None:
         if keys and keys <= {"std", "relative", "bias_std"}:
             return Gaussian(**{str(key): float(number) for key, number in value.items()})
     raise ValueError(
-        f'noise is a number, {{"std": …, "relative": …, "bias_std": …}} or {{"uniform": [low, high]}}, not {value!r}'
+        f'noise must be a number, {{"std": …, "relative": …, "bias_std": …}} or {{"uniform": [low, high]}}, got {value!r}'
     )

@@ -54,7 +54,7 @@ class TermBuffer:
         *output_shape)."""
         term = self.term
         if raw.shape != (len(worlds), *term.shape):
-            raise ValueError(f"term '{term.name}' is {term.shape}, not {raw.shape[1:]}, of {len(worlds)} worlds")
+            raise ValueError(f"term '{term.name}' has the shape {term.shape}, but its values have {raw.shape[1:]}, for {len(worlds)} worlds")
         seen = term.finish(self._with_noise(raw, worlds))
         if self._late.shape[1] > 1:
             seen = self._delayed(seen, worlds)
@@ -96,9 +96,9 @@ class Pipeline:
         if not names:
             raise ValueError("an observation needs a term")
         if len(set(names)) < len(names):
-            raise ValueError(f"two observation terms have one name: {sorted(names)}")
+            raise ValueError(f"observation terms must have different names: {sorted(names)}")
         if layout not in ("dict", "vector"):
-            raise ValueError(f"layout is 'dict' or 'vector', not {layout!r}")
+            raise ValueError(f"layout must be 'dict' or 'vector', got {layout!r}")
         self.layout = layout
         self.num_worlds = num_worlds
         self._buffers = [TermBuffer(term, num_worlds) for term in terms]

@@ -57,13 +57,13 @@ class PointGoal(Task):
         denoise: bool = False,
     ) -> None:
         if observation not in ("image", "depth", "lidar"):
-            raise ValueError(f"observation is 'image', 'depth' or 'lidar', not {observation!r}")
+            raise ValueError(f"observation must be 'image', 'depth' or 'lidar', got {observation!r}")
         if place not in ("arena", "house"):
-            raise ValueError(f"place is 'arena' or 'house', not {place!r}")
+            raise ValueError(f"place must be 'arena' or 'house', got {place!r}")
         if not 0 < radius < reach[0] <= reach[1]:
-            raise ValueError(f"radius {radius} and reach {reach}: 0 < radius < least reach <= most reach is expected")
+            raise ValueError(f"expected 0 < radius < least reach <= most reach, got radius {radius} and reach {reach}")
         if beams < 1 or min(size) < 1 or max_range <= 0:
-            raise ValueError("beams, size and max_range are above 0")
+            raise ValueError("beams, size and max_range must be above 0")
         self.observation: Sight = observation
         self.place: Place = place
         self.size, self.beams, self.reach, self.radius, self.max_range = size, beams, reach, radius, max_range
@@ -216,7 +216,7 @@ def _point(value: object, size: int, space: FreeSpace) -> Array:
     """Numbers from an option of reset. Errors: ValueError for another count, NaN, or a place that is not free."""
     point = np.asarray(value, dtype=np.float64)
     if point.shape != (size,) or not np.isfinite(point).all():
-        raise ValueError(f"{value!r}: {size} finite numbers are expected")
+        raise ValueError(f"expected {size} finite numbers, got {value!r}")
     if not space.is_free(point):
         raise ValueError(f"there is no room for the cart at ({point[0]:g}, {point[1]:g})")
     return point

@@ -52,9 +52,9 @@ class QuadrupedVelocity(Task):
             or not np.isfinite(self.goals).all()
             or (self.goals[:, 0] > self.goals[:, 1]).any()
         ):
-            raise ValueError("vx, vy and yaw_rate are ranges (least, most)")
+            raise ValueError("vx, vy and yaw_rate must be ranges (least, most)")
         if not hold > 0:
-            raise ValueError(f"hold is {hold}, a goal stays for some time")
+            raise ValueError(f"hold must be a time above 0 s, got {hold}")
         self.hold, self.noisy, self.kp, self.kd = hold, noisy, kp, kd
 
     def scene(self) -> SceneSource:
@@ -128,7 +128,7 @@ class _QuadrupedWorld(TaskWorld):
         if "goal" in options:
             self._fixed = np.asarray(options["goal"], dtype=np.float64)
             if self._fixed.shape != (3,) or not np.isfinite(self._fixed).all():
-                raise ValueError(f"goal is (vx, vy, yaw_rate), not {options['goal']!r}")
+                raise ValueError(f"goal must be (vx, vy, yaw_rate), got {options['goal']!r}")
         self._draw_goal(0.0)
         self._action, self._before = np.zeros(JOINTS), np.zeros(JOINTS)
         self._robot.place(position=(0, 0, 0.3), yaw=float(rng.uniform(-math.pi, math.pi)))

@@ -35,7 +35,7 @@ class Reach(Task):
 
     def __init__(self, radius: float = 0.05, hold: int = 1) -> None:
         if not radius > 0 or hold < 1:
-            raise ValueError(f"radius {radius} and hold {hold} are above 0")
+            raise ValueError(f"radius and hold must be above 0, got {radius} and {hold}")
         self.radius, self.hold = radius, hold
 
     def scene(self) -> SceneSource:
@@ -87,7 +87,7 @@ class _ReachWorld(TaskWorld):
         if "goal" in options:
             self._goal = np.asarray(options["goal"], dtype=np.float64)
             if self._goal.shape != (3,) or not np.isfinite(self._goal).all():
-                raise ValueError(f"goal is (x, y, z), not {options['goal']!r}")
+                raise ValueError(f"goal must be (x, y, z), got {options['goal']!r}")
         self._target = np.clip(self._home + rng.uniform(-0.2, 0.2, JOINTS), *self._limits)
         self._held = 0
         self._arm.set_joints(qpos=self._target, qvel=np.zeros(JOINTS))

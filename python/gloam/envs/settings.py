@@ -52,19 +52,19 @@ class EnvSettings:
             _seconds(f"sensor_latency of '{name}'", latency)
         for name, limits in self.randomize.items():
             if not isinstance(limits, Sequence) or isinstance(limits, str) or len(limits) != 2:
-                raise ValueError(f"randomize '{name}' has a range (low, high), not {limits!r}")
+                raise ValueError(f"randomize '{name}' must be a range (low, high), got {limits!r}")
             low, high = (np.asarray(limit, dtype=np.float64) for limit in limits)
             if low.shape != high.shape or not (
                 np.isfinite(low).all() and np.isfinite(high).all() and (low <= high).all()
             ):
-                raise ValueError(f"randomize '{name}': {limits!r} is no range (low, high)")
+                raise ValueError(f"randomize '{name}': {limits!r} is not a range (low, high)")
         for name, limits in self.dynamics.items():
             if name not in QUANTITIES:
-                raise ValueError(f"dynamics names '{name}', the quantities are {', '.join(QUANTITIES)}")
+                raise ValueError(f"dynamics has no quantity '{name}'; the quantities are {', '.join(QUANTITIES)}")
             if len(limits) != 2 or not (0 < limits[0] <= limits[1] < math.inf):
-                raise ValueError(f"dynamics '{name}': {limits!r} is no range (low, high) of positive factors")
+                raise ValueError(f"dynamics '{name}': {limits!r} is not a range (low, high) of positive factors")
         if self.threads is not None and self.threads < 1:
-            raise ValueError(f"threads is {self.threads}, at least 1 steps the worlds")
+            raise ValueError(f"threads must be at least 1, got {self.threads}")
 
     def action_delay_steps(self, timestep: float) -> tuple[int, int]:
         """Least and most delay of actions [physics steps]; timestep [s]."""
@@ -80,7 +80,7 @@ class EnvSettings:
         for key in ("sensor_latency", "noise", "history"):
             for name in getattr(self, key):
                 if name not in names:
-                    raise ValueError(f"{key} names '{name}', the terms are {sorted(names)}")
+                    raise ValueError(f"{key}: there is no term '{name}'; the terms are {sorted(names)}")
         return [self._applied(term, interval) for term in terms]
 
     def _applied(self, term: Term, interval: float) -> Term:
@@ -112,5 +112,5 @@ def _seconds(name: str, value: Range) -> tuple[float, float]:
     """A time or range of times [s] as (least, most)."""
     low, high = (value, value) if isinstance(value, (int, float)) else value
     if not (math.isfinite(low) and math.isfinite(high) and 0 <= low <= high):
-        raise ValueError(f"{name} is {value!r}, a time [s] or a range (least, most) of times from 0 upwards")
+        raise ValueError(f"{name} must be a time [s] of at least 0 or a range (least, most) of such times, got {value!r}")
     return float(low), float(high)

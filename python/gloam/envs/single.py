@@ -37,9 +37,9 @@ class Env(gym.Env[Observation, Array]):
         render_mode: str | None = None,
     ) -> None:
         if render_mode not in (None, "rgb_array"):
-            raise ValueError(f"render_mode is None or 'rgb_array', not {render_mode!r}")
+            raise ValueError(f"render_mode must be None or 'rgb_array', got {render_mode!r}")
         if max_episode_steps is not None and max_episode_steps < 1:
-            raise ValueError(f"max_episode_steps is {max_episode_steps}, an episode has a step at least")
+            raise ValueError(f"max_episode_steps must be at least 1, got {max_episode_steps}")
         self.render_mode = render_mode
         self._worlds = Worlds(task, 1, settings or EnvSettings())
         self._most_steps = max_episode_steps
@@ -79,7 +79,7 @@ class Env(gym.Env[Observation, Array]):
         """Takes one control step. Errors: ValueError for another shape, or a number that is not finite."""
         assert self.sim is not None
         if self._step_count is None:
-            raise gloam.UsageError("step() before reset()")
+            raise gloam.UsageError("call reset() before step()")
         actions = checked_actions(np.asarray(action)[None], self._worlds.action_space, 1)
         result = self._worlds.step(_FIRST, actions)
         self._step_count += 1
@@ -95,8 +95,8 @@ class Env(gym.Env[Observation, Array]):
     def __reduce__(self) -> Any:
         """A pickled or copied environment is made again from its spec, and has to be reset."""
         if self.spec is None:
-            raise TypeError("an environment without a spec cannot be pickled or copied: register it and make it with gym.make(), whose env.spec makes "
-                            "another one, or send the function that makes it")
+            raise TypeError("an environment without a spec cannot be pickled or copied: register it and create it with gym.make(), whose env.spec creates "
+                            "another one, or send the function that creates it")
         return made_by_spec, (self.spec,)
 
     def __deepcopy__(self, _: dict[int, Any]) -> Any:

@@ -84,7 +84,7 @@ class LidarSource(Source):
         scan = self._last
         if scan is None:
             raise gloam.UsageError(
-                f"no scan of '{self._lidar.name}' has ended yet", hint="settle for 1 / rate at least"
+                f"no scan of '{self._lidar.name}' has ended yet", hint="settle for at least 1 / rate"
             )
         ranges = np.full(self._shape, self._far, dtype=np.float32)
         np.minimum.at(ranges, (np.asarray(scan.ring), np.asarray(scan.column)), np.asarray(scan.range))
@@ -134,7 +134,7 @@ class TopicSource(Source):
             self._last = message
         if self._last is None:
             raise gloam.UsageError(
-                f"topic '{self._topic}' has said nothing yet", hint="give it a higher rate, or a longer settle"
+                f"topic '{self._topic}' has not published a message yet", hint="increase its rate, or settle for longer"
             )
         value: Any = self._last.decode()
         for part in self._field.split(".") if self._field else []:

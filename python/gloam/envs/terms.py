@@ -40,18 +40,18 @@ class Term:
         if not self.name:
             raise ValueError("an observation term needs a name")
         if any(size < 1 for size in self.shape):
-            raise ValueError(f"term '{self.name}': a shape of {self.shape} holds nothing")
+            raise ValueError(f"term '{self.name}': the shape {self.shape} is empty")
         if self.history < 1:
-            raise ValueError(f"term '{self.name}': history is {self.history}, at least 1 value is given")
+            raise ValueError(f"term '{self.name}': history must be at least 1, got {self.history}")
         low, high = self.lags
         if not 0 <= low <= high:
-            raise ValueError(f"term '{self.name}': a delay of {self.delay} control steps is no range from 0 upwards")
+            raise ValueError(f"term '{self.name}': delay must be a range of control steps of at least 0, got {self.delay}")
         if self.clip is not None and not self.clip[0] <= self.clip[1]:
-            raise ValueError(f"term '{self.name}': clip from {self.clip[0]} to {self.clip[1]} is no range")
+            raise ValueError(f"term '{self.name}': clip from {self.clip[0]} to {self.clip[1]} is not a range")
         if not np.all(np.isfinite(self.scale)):
-            raise ValueError(f"term '{self.name}': scale {self.scale} is not finite")
+            raise ValueError(f"term '{self.name}': scale must be finite, got {self.scale}")
         if np.ndim(self.scale) > 0 and np.shape(self.scale) != self.shape:
-            raise ValueError(f"term '{self.name}': scale has the shape {np.shape(self.scale)}, the term {self.shape}")
+            raise ValueError(f"term '{self.name}': scale has the shape {np.shape(self.scale)}, but the term has {self.shape}")
 
     @property
     def lags(self) -> LagRange:

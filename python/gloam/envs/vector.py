@@ -39,9 +39,9 @@ class VectorEnv(gym.vector.VectorEnv[Observation, Array, Array]):
         render_mode: str | None = None,
     ) -> None:
         if render_mode not in (None, "rgb_array"):
-            raise ValueError(f"render_mode is None or 'rgb_array', not {render_mode!r}")
+            raise ValueError(f"render_mode must be None or 'rgb_array', got {render_mode!r}")
         if max_episode_steps is not None and max_episode_steps < 1:
-            raise ValueError(f"max_episode_steps is {max_episode_steps}, an episode has a step at least")
+            raise ValueError(f"max_episode_steps must be at least 1, got {max_episode_steps}")
         self.autoreset_mode = AutoresetMode(autoreset_mode)
         self.render_mode = render_mode
         self.num_envs = num_envs
@@ -59,7 +59,7 @@ class VectorEnv(gym.vector.VectorEnv[Observation, Array, Array]):
         self._last: Any = create_empty_array(self.single_observation_space, num_envs)
 
     def __reduce__(self) -> Any:
-        raise TypeError("a vector environment cannot be pickled or copied: make another with gym.make_vec(env.spec), or send the function that makes it")
+        raise TypeError("a vector environment cannot be pickled or copied: create another with gym.make_vec(env.spec), or send the function that creates it")
 
     @property
     def sims(self) -> list[gloam.Simulation]:
@@ -106,7 +106,7 @@ class VectorEnv(gym.vector.VectorEnv[Observation, Array, Array]):
         """
         assert self.sims is not None
         if not self._is_begun.all():
-            raise gloam.UsageError("step() before reset()")
+            raise gloam.UsageError("call reset() before step()")
         checked = checked_actions(actions, self._worlds.action_space, self.num_envs)
         fresh = self._to_reset()
         going = np.flatnonzero(~fresh)
@@ -154,7 +154,7 @@ class VectorEnv(gym.vector.VectorEnv[Observation, Array, Array]):
         if self._is_done.any():
             raise gloam.UsageError(
                 f"the episodes of worlds {np.flatnonzero(self._is_done).tolist()} have ended: "
-                'reset(`options={"reset_mask": mask}`) them first'
+                'reset them first with reset(options={"reset_mask": mask})'
             )
         return np.zeros(self.num_envs, dtype=np.bool_)
 

@@ -56,7 +56,7 @@ class Worlds:
 
     def __init__(self, task: Task, num_worlds: int, settings: EnvSettings) -> None:
         if num_worlds < 1:
-            raise ValueError(f"num_envs is {num_worlds}, at least one world is needed")
+            raise ValueError(f"num_envs must be at least 1, got {num_worlds}")
         self._process = os.getpid()
         self.task = task
         self.settings = settings
