@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
 """Runs Gloam's tests: `./gloam test [fast|full] [--only NAME]`.
 
-fast  what takes about six minutes once built
-      (no tier) what CI runs: format, lint of changed files, all tests, and a quarter of a minute of fuzzing with sanitizers for each of the
-      readers that everything goes through; all else under sanitizers is in full, which also makes and tries the bundle
-full  the same plus lint of every file, every sanitizer over everything, 10 000 damaged files for every reader, five minutes of
-      fuzzing per target and sweeps over 200 seeds: an hour or more, but resumable: parts that passed are kept in build/full_state.json until the source changes
+fast  the quick tests: about six minutes once built
+      (no tier) the checks of CI: format, lint of changed files, all tests, and 15 seconds of fuzzing with sanitizers for each of the main
+      readers; the other tests with sanitizers, and the bundle, are part of full
+full  the same plus lint of all files, all tests with every sanitizer, 10 000 damaged files for every reader, five minutes of fuzzing per
+      target and sweeps over 200 seeds: an hour or more, but resumable: build/full_state.json lists passed parts until the source changes
 """
 import argparse
 import contextlib
@@ -313,8 +313,8 @@ def fuzz(tally, seconds, targets):
 
 def main():
     parser = argparse.ArgumentParser(prog="./gloam test", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("tier", nargs="?", choices=["fast", "full"], help="default: what CI runs")
-    parser.add_argument("--only", metavar="NAME", help="only tests whose name contains NAME (unit and e2e, release build)")
+    parser.add_argument("tier", nargs="?", choices=["fast", "full"], help="default: the checks of CI")
+    parser.add_argument("--only", metavar="NAME", help="run only tests whose name contains NAME (unit and end-to-end tests, release build)")
     args = parser.parse_args()
     BUILD.mkdir(exist_ok=True)
     if args.tier != "fast" and not args.only:  # what CI runs; a user's build has warnings that are no errors
@@ -330,7 +330,7 @@ def main():
             tiers[args.tier](tally)
     total = time.time() - started
     if tally.broken:
-        print("broken: " + ", ".join(tally.broken))
+        print("failed: " + ", ".join(tally.broken))
     print(f"total {total / 60:.1f} min")
     print(f"{tally.passed} passed, {tally.failed} failed" + (f", {tally.skipped} skipped" if tally.skipped else ""))
     return 1 if tally.failed or not tally.passed else 0
@@ -434,7 +434,7 @@ def full(tally):
             state["passed"][name] = {"tests": own.passed, "skipped": own.skipped, "seconds": round(time.time() - start)}
             state_file.write_text(json.dumps(state, indent=1))
         else:
-            print(f"kept {name}: passed before on this source")
+            print(f"skipped {name}: already passed on this source")
         tally.passed += state["passed"][name]["tests"]
         tally.skipped += state["passed"][name]["skipped"]
     state["not_passed"] = [name for name in parts if name not in state["passed"]]

@@ -43,7 +43,7 @@ def needed(file, here):
             continue
         found = rest.split(" (")[0]
         if not found or "not found" in found:
-            sys.exit(f"gloam: error: {file.name} needs {name}, which is not on this machine")
+            sys.exit(f"gloam: error: {file.name} needs {name}, which was not found on this machine")
         yield name, Path(found)
 
 
@@ -67,7 +67,7 @@ def copy_licences(files, folder):
     for package in sorted({package_of(file) for file in files}):
         text = Path("/usr/share/doc") / package / "copyright"
         if not package or not text.exists():
-            sys.exit("gloam: error: a library is carried whose licence is not on this machine")
+            sys.exit("gloam: error: the licence of a bundled library was not found on this machine")
         (folder / package).mkdir(parents=True, exist_ok=True)
         shutil.copy(text, folder / package)
     for info in sorted((ROOT / ".venv" / "wheels").glob("*.dist-info")):

@@ -1,5 +1,5 @@
-# Answers to --help and --version, sourced by ./gloam. They build, install and write nothing: a built program gives them,
-# however old it is; else they are read out of the sources.
+# Answers to --help and --version, sourced by ./gloam. They build, install and write nothing: a built program prints them,
+# however old it is; otherwise they are read from the sources.
 
 asks_for() {  # asks_for "WORD…" ARG…: whether an argument before -- is one of the words
   local words=" $1 " word
@@ -11,7 +11,7 @@ asks_for() {  # asks_for "WORD…" ARG…: whether an argument before -- is one 
   return 1
 }
 
-# The strings of a C++ call in a source file, one call a line: NAME<tab>TEXT.
+# The strings of a C++ call in a source file, one call per line: NAME<tab>TEXT.
 calls() {  # calls PATTERN FILE…
   local pattern=$1
   shift
@@ -20,11 +20,11 @@ calls() {  # calls PATTERN FILE…
 }
 
 script_help() {
-  printf '%s\n\n' "Gloam: a robotics simulator. Physics is exactly MuJoCo, light is path-traced."
+  printf '%s\n\n' "Gloam: a robotics simulator with unmodified MuJoCo physics and path-traced sensors."
   sed -n '2,/^set -/p' "$root/gloam" | sed -n 's/^# \{0,1\}//p'
   printf '\nCommands of the program:\n'
   calls add_subcommand "$root"/apps/commands/*.cc | awk -F'\t' '{ printf "  %-12s %s\n", $1, $2 }'
-  printf '\n%s\n' "The program is not built yet: './gloam setup' builds it (some minutes), then './gloam COMMAND --help' has every option."
+  printf '\n%s\n' "The program is not built yet. After './gloam setup' (several minutes), './gloam COMMAND --help' lists every option."
 }
 
 command_help() {  # command_help COMMAND: of the program, as its source has it
@@ -34,18 +34,18 @@ command_help() {  # command_help COMMAND: of the program, as its source has it
   calls add_subcommand "$file" | cut -f2
   printf '\n'
   calls 'add_(option|flag)' "$file" | awk -F'\t' '{ printf "  %-20s %s\n", $1, $2 }'
-  printf '\n%s\n' "The program is not built yet; './gloam setup' builds it, and then this help has every option."
+  printf '\n%s\n' "The program is not built yet. After './gloam setup', this help lists every option."
 }
 
 setup_help() {
   cat <<'END'
 Usage: ./gloam setup [TARGET…]
 
-Installs the Debian packages that are missing, fetches the pinned wheels into .venv/ and builds into build/$GLOAM_PRESET
-(default: build/release). Without TARGET the program; any other command of ./gloam does the same first.
+Installs missing Debian packages, downloads the pinned wheels into .venv/ and builds into build/$GLOAM_PRESET (default:
+build/release). Without TARGET it builds the program. All other commands of ./gloam run this setup first.
 
-  GLOAM_PRESET=dev ./gloam setup    with debug checks; presets: release, dev, asan, tsan, cuda, pack
-  ./gloam setup gloam_python        the Python module as well
+  GLOAM_PRESET=dev ./gloam setup    build with debug checks; presets: release, dev, asan, tsan, cuda, pack
+  ./gloam setup gloam_python        build the Python module
 END
 }
 

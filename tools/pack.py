@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
-"""Makes a bundle that runs on a bare machine: `./gloam pack [FILE]`, default build/gloam.tar.gz.
+"""Creates a bundle that runs on a machine without installed packages: `./gloam pack [FILE]`, default: build/gloam.tar.gz.
 
-    gloam/bin/            the program, its test and its measurement of the card
-    gloam/lib/gloam/      every library they need but the C library's own
-    gloam/lib/gloam/oidn/ Open Image Denoise for the CPU and the card, with the networks that Gloam asks for
+    gloam/bin/            the program, its GPU test and its GPU benchmark
+    gloam/lib/gloam/      all libraries that they need, except the C library
+    gloam/lib/gloam/oidn/ Open Image Denoise for the CPU and the GPU, with the networks that Gloam uses
     gloam/share/gloam/    assets and examples
 
-Programs look for libraries beside themselves ($ORIGIN); nothing has to be installed but the card's driver.
+The programs look for libraries next to themselves ($ORIGIN); only the driver of the GPU has to be installed.
 """
 import argparse
 import os
@@ -38,7 +38,7 @@ def libraries(program):
             continue
         file = rest.split(" (")[0]
         if not file or "not found" in file:
-            sys.exit(f"gloam: error: {program} needs {name}, which is not on this machine")
+            sys.exit(f"gloam: error: {program} needs {name}, which was not found on this machine")
         yield name, Path(file).resolve()
 
 
@@ -77,7 +77,7 @@ def try_denoiser(folder):
         told = subprocess.run([folder / "bin" / "gloam", "-v", "render", robot, "--camera", "free", "--spp", "1", "--resolution", "64x48",
                                "--device", "cpu", "--out", out], text=True, stderr=subprocess.PIPE, stdout=subprocess.DEVNULL, env=env)
     if told.returncode != 0 or "denoiser: Open Image Denoise" not in told.stderr:
-        sys.exit(f"gloam: error: the bundle does not denoise:\n{told.stderr}")
+        sys.exit(f"gloam: error: the program in the bundle does not denoise:\n{told.stderr}")
 
 
 def fill(folder, build):
@@ -102,7 +102,7 @@ def main():
     parser = argparse.ArgumentParser(prog="./gloam pack", description=__doc__,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("build", type=Path, help=argparse.SUPPRESS)
-    parser.add_argument("file", nargs="?", type=Path, default=ROOT / "build" / "gloam.tar.gz")
+    parser.add_argument("file", nargs="?", type=Path, default=ROOT / "build" / "gloam.tar.gz", help="bundle to write")
     args = parser.parse_args()
     with tempfile.TemporaryDirectory() as scratch:
         folder = Path(scratch) / "gloam"
@@ -114,7 +114,7 @@ def main():
     print(args.file)
     print(f"gloam: {size / (1 << 20):.1f} MiB", file=sys.stderr)
     if size > MOST_BYTES:
-        sys.exit(f"gloam: error: a bundle may have {MOST_BYTES >> 20} MiB")
+        sys.exit(f"gloam: error: a bundle must not exceed {MOST_BYTES >> 20} MiB")
 
 
 if __name__ == "__main__":

@@ -1,14 +1,14 @@
 #!/usr/bin/env python3
-"""Makes a wheel of `import gloam` that carries its libraries: `./gloam wheel [FOLDER]`, default build/wheels.
+"""Builds a wheel of `import gloam` that contains its libraries: `./gloam wheel [FOLDER]`, default: build/wheels.
 
     gloam/                package, module, types
     gloam/bin/gloam       the program
-    gloam/lib/            libgloam.so; lib/gloam/: every library that is needed but those of the system
+    gloam/lib/            libgloam.so; lib/gloam/: all libraries that it needs, except those of the system
     gloam/share/gloam/    assets and examples
-    *.dist-info/licenses  those of all that is carried
+    *.dist-info/licenses  licences of all bundled libraries
 
-What `pip wheel .` packs finds Debian's libraries on the machine; here they are copied under names of their own, so that
-another package's TBB or OpenSSL in the same process is not taken for ours, and each looks beside itself.
+A wheel of `pip wheel .` uses Debian's libraries on the machine. This one contains copies of them under unique names, so
+that another package's TBB or OpenSSL in the same process is not used instead, and finds them next to itself.
 """
 
 import argparse
@@ -56,7 +56,7 @@ def interpreter(version):
             break
         if told.returncode == 0:
             return told.stdout.strip()
-    die(f"there is no {asked} on this machine")
+    die(f"{asked} was not found on this machine")
 
 
 def tools(python):
@@ -119,9 +119,9 @@ def main():
     parser = argparse.ArgumentParser(
         prog="./gloam wheel", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
-    parser.add_argument("folder", nargs="?", type=Path, default=ROOT / "build" / "wheels")
-    parser.add_argument("--python", metavar="VERSION", help="such as 3.12, or an interpreter; default: that of python3")
-    parser.add_argument("--prebuilt", type=Path, metavar="FOLDER", help="a build folder that is taken as it stands")
+    parser.add_argument("folder", nargs="?", type=Path, default=ROOT / "build" / "wheels", help="folder for the wheel")
+    parser.add_argument("--python", metavar="VERSION", help="version of Python, such as 3.12, or an interpreter; default: that of python3")
+    parser.add_argument("--prebuilt", type=Path, metavar="FOLDER", help="existing build folder to package without building")
     args = parser.parse_args()
     args.folder.mkdir(parents=True, exist_ok=True)
     python = tools(interpreter(args.python))
