@@ -179,10 +179,8 @@ void print_text(const EvaluateCommand& command, const Evaluation& found) {
 Status write_plot(const EvaluateCommand& command, const Evaluation& found) {
   std::error_code code;
   if (std::filesystem::exists(command.plot, code))
-    return Error{ErrorKind::kUsage,
-                 "there is a file '" + command.plot + "' already",
-                 {},
-                 "choose another name"};
+    return Error{
+        ErrorKind::kUsage, "file '" + command.plot + "' already exists", {}, "choose another name"};
   std::ofstream out(command.plot, std::ios::binary);
   out << trajectory_plot(found.pair, found.absolute.translation);
   if (!out.flush())

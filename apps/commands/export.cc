@@ -66,7 +66,7 @@ int export_log(const ExportCommand& command) {
   std::error_code code;
   if (std::filesystem::exists(command.out, code))
     return fail({ErrorKind::kUsage,
-                 "there is a file '" + command.out + "' already",
+                 "file '" + command.out + "' already exists",
                  {},
                  "choose another name"});
   std::ofstream out(command.out, std::ios::binary);

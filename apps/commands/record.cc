@@ -40,7 +40,7 @@ int record(const RecordCommand& command_line, const Globals& globals) {
   std::error_code code;
   if (std::filesystem::exists(command.log, code) && !command.overwrite)
     return fail({ErrorKind::kUsage,
-                 "there is a file '" + command.log + "' already",
+                 "file '" + command.log + "' already exists",
                  {},
                  "choose another name, or replace it with --overwrite"});
   auto world = compile(*scene, globals, command.options.keyframe);

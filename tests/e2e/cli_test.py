@@ -171,10 +171,10 @@ class Mistakes(ProgramTest):
             self.complains(1, *arguments, env={"GLOAM_CACHE": str(file)}, words=[str(file), "cannot read the cache"])
 
     def test_unknown_command_and_option_are_usage_errors(self):
-        self.complains(2, "rnu", words=["gloam: error: there is no command 'rnu'", "did you mean 'run'?"])
+        self.complains(2, "rnu", words=["gloam: error: unknown command 'rnu'", "did you mean 'run'?"])
         self.complains(2, "--quiet", "galery", "--quick", words=["'galery'", "did you mean 'gallery'?"])
         self.complains(2, "help", words=["'help'", "did you mean '--help'?"])
-        self.complains(2, "run", "--no-such-option", "x.xml", words=["gloam: error: there is no option '--no-such-option'"])
+        self.complains(2, "run", "--no-such-option", "x.xml", words=["gloam: error: unknown option '--no-such-option'"])
         self.complains(2, "render", "x.xml", "--resolutoin=64x48", words=["'--resolutoin'", "did you mean '--resolution'?"])
         self.complains(2, "render", "x.xml", "--qiet", words=["'--qiet'", "did you mean '--quiet'?"])
         self.complains(2, "render", "x.xml", "--spp", "many", words=["spp", "many", "--help"])

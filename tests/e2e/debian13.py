@@ -137,7 +137,7 @@ class Debian13(unittest.TestCase):
     def test_the_wheel_where_nothing_is_installed(self):
         made = run([ROOT / "gloam", "wheel", self.folder / "wheels", "--python", "3.13"], timeout=3600,
                    env={**os.environ, "GLOAM_PRESET": "release"})
-        if "there is no python3.13" in made.stdout:
+        if "python3.13 was not found" in made.stdout:
             self.skipTest("needs Python 3.13 on this machine, to build the wheel")
         self.assertEqual(made.returncode, 0, made.stdout[-3000:])
         wheel = max((self.folder / "wheels").glob("*cp313*.whl"), key=lambda file: file.stat().st_mtime)

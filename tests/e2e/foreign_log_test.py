@@ -45,7 +45,7 @@ class Foreign(ProgramTest):
             "zipped.bag": (archive.getvalue(), "ZIP", "unzip"),
             "nothing.mcap": (b"", "is empty", "0 bytes"),
             "nothing.bag": (b"", "is empty", "0 bytes"),
-            "short.mcap": (MCAP[:5], "cut after 5 bytes", "recovered"),
+            "short.mcap": (MCAP[:5], "truncated after 5 bytes", "recovered"),
             "renamed.mcap": (b"#ROSBAG V2.0\n" + bytes(64), "ROS 1 bag", "rosbags-convert"),
         }
 

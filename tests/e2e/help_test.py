@@ -56,7 +56,7 @@ class HelpWithoutABuild(unittest.TestCase):
         result = self.ask("run", "--help")
         self.assertEqual(result.returncode, 0)
         self.assertIn("--duration", result.stdout)
-        self.assertIn("Seconds of simulation time", result.stdout)
+        self.assertIn("Duration in seconds of simulation time", result.stdout)
         self.assertIn("./gloam setup", result.stdout)
         self.assertEqual(self.ask("run", "scene.toml", "-h").returncode, 0)
 

@@ -344,7 +344,7 @@ class Roots(ProgramTest):
             self.write("model/a.gltf", json.dumps({**self.GLTF, "buffers": [{"uri": uri, "byteLength": 36}]}))
             said = self.gloam("info", scene, "--strict").stdout
             self.assertIn("/buffers/0", said)
-            self.assertNotIn("everything in the file is simulated and drawn", said)
+            self.assertNotIn("everything in the file is simulated and rendered", said)
 
 
 if __name__ == "__main__":

@@ -36,8 +36,8 @@ class Notes(ProgramTest):
         self.assert_told(scene, "object 'lid' is open")
         listing = self.gloam("info", scene).stdout
         self.assertIn("notes (1)", listing)
-        self.assertIn("everything in the file is simulated and drawn", listing)
-        self.assertIn("10 triangles drawn", listing)
+        self.assertIn("everything in the file is simulated and rendered", listing)
+        self.assertIn("10 triangles rendered", listing)
 
     def test_of_places(self):
         self.write("mm.obj", box((0, 0, 0), (20000, 20000, 100)))
@@ -57,7 +57,7 @@ class Notes(ProgramTest):
         self.write("g.obj", box((0, 0, 0), (1, 1, 0.2)))
         scene = self.write("s.toml", "[[hfield]]\nname = 'g'\nfile = 'g.obj'\nlow = [-5, -5]\nhigh = [5, 5]\n")
         self.assert_told(scene, "samples missed the mesh: most of this ground is filled in")
-        self.assertIn("12 triangles drawn", self.gloam("info", scene).stdout)
+        self.assertIn("12 triangles rendered", self.gloam("info", scene).stdout)
 
     def test_of_robots_in_generated_places(self):
         self.write("ball.xml", BALL)

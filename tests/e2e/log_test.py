@@ -101,7 +101,7 @@ class Log(unittest.TestCase):
             said = subprocess.run([str(PROGRAM), "run", str(self.log), "--at", "0.5", "--duration", "0.01", "--out", "refused", *options],
                                   cwd=self.folder, capture_output=True, text=True, timeout=300)
             self.assertEqual(said.returncode, 2, (options, said.stderr))
-            self.assertIn(f"{options[0]} does not go with --at", said.stderr)
+            self.assertIn(f"{options[0]} cannot be combined with --at", said.stderr)
         self.assertFalse((self.folder / "refused").exists())
 
     def test_a_replay_says_where_its_motion_comes_from(self):
@@ -165,7 +165,7 @@ class Log(unittest.TestCase):
         robot = fetch_data.robot_log(fetch_data.default_folder())
         if robot.exists():
             self.assertIn("/tf", gloam("info", robot).stdout)
-            self.assertIn("no run of Gloam", gloam("replay", robot, "--verify", expect=1).stderr)
+            self.assertIn("no Gloam run", gloam("replay", robot, "--verify", expect=1).stderr)
 
     def test_a_changed_model_is_named(self):
         scene = self.folder / "copy"

@@ -83,7 +83,7 @@ class OneWriter(ProgramTest):
         self.assertEqual(json.loads((out / "summary.json").read_text())["state"], "finished")
 
     def test_a_log_that_is_taken_away_or_cut(self):
-        for name, harm, says in (("gone", os.unlink, "was removed"), ("cut", lambda path: os.truncate(path, 10), "was cut to"),
+        for name, harm, says in (("gone", os.unlink, "was removed"), ("cut", lambda path: os.truncate(path, 10), "was truncated to"),
                                  ("moved", lambda path: os.rename(path, f"{path}.old"), "was moved or replaced")):
             log = self.folder / f"{name}.mcap"
             process = self.start("record", self.model, "-o", log, "--duration", "200" if name == "moved" else "1e6", "--topics", "/tf")

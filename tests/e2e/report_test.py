@@ -124,12 +124,12 @@ class Report(unittest.TestCase):
         shutil.copytree(self.folder / "swing-002", broken)
         (broken / "side.mp4").write_bytes((broken / "side.mp4").read_bytes()[:300])
         said = self.gloam("report", "swing-001", "broken", "missing", "-o", "partial.html", expect=3).stderr
-        self.assertRegex(said, r"missing: is no results folder")
+        self.assertRegex(said, r"missing: is not a results folder")
         self.assertRegex(said, r"broken/side.mp4: ")
         page = Page((self.folder / "partial.html").read_text())
         self.assertEqual(page.problems, [])
-        self.assertIn("Left out", page.text)
-        self.assertIn("is no results folder", self.gloam("report", "missing", "-o", "none.html", expect=1).stderr)
+        self.assertIn("Omitted", page.text)
+        self.assertIn("is not a results folder", self.gloam("report", "missing", "-o", "none.html", expect=1).stderr)
         self.assertFalse((self.folder / "none.html").exists())
         self.assertIn("already", self.gloam("report", "swing-001", "-o", "all.html", expect=2).stderr)
         self.gloam("report", expect=2)
@@ -250,7 +250,7 @@ class Pictures(ProgramTest):
                 self.gloam("export", "run.mcap", "--to", "mp4", "--topic", name, "--out", folder + ".mp4")
                 self.assertGreater(video_frames(self.folder / (folder + ".mp4")), 0)
         for to in ("png", "mp4"):
-            self.assertIn("no pictures", self.gloam("export", "run.mcap", "--to", to, "--topic", "/clock", "--out", "x", expect=1).stderr)
+            self.assertIn("contains no images", self.gloam("export", "run.mcap", "--to", to, "--topic", "/clock", "--out", "x", expect=1).stderr)
         self.gloam("export", "run.mcap", "--to", "png", "--topic", raw, "--out", "pictures", expect=2)  # is there already
 
 

@@ -28,9 +28,9 @@ class WordsTest(ProgramTest):
 
     def test_of_outputs_that_name_nothing(self):
         result = self.gloam("run", self.model, "--duration", "0.01", "--output", "lidar,sensors", "--out", "out")
-        self.assertIn("--output lidar names nothing here", result.stderr)
-        self.assertIn("--output sensors names nothing here", result.stderr)
-        self.assertNotIn("pictures", result.stdout)
+        self.assertIn("--output lidar has no effect", result.stderr)
+        self.assertIn("--output sensors has no effect", result.stderr)
+        self.assertNotIn("images", result.stdout)
 
     def test_formats_of_a_lidar_are_kept(self):
         scene = self.write("scene.toml", LIDAR)
@@ -45,7 +45,7 @@ class WordsTest(ProgramTest):
         self.assertIn("hidden.xml:2: 1 site of group 0 is not drawn", listing)
         self.assertNotIn("everything", listing)
         self.assertEqual(len(json.loads(self.gloam("info", model, "--json").stdout)["hidden"]), 2)
-        self.assertIn("everything in the file is simulated and drawn", self.gloam("info", self.model).stdout)
+        self.assertIn("everything in the file is simulated and rendered", self.gloam("info", self.model).stdout)
 
     def test_export_says_what_it_leaves_out(self):
         scene = self.write("lamp.toml", "[environment]\nfile = 'pendulum.xml'\n[[light]]\nname = 'l'\ntype = 'point'\nposition = [0, 0, 3]\nflux = 100\n")

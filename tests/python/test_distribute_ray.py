@@ -89,7 +89,7 @@ def test_rollouts_of_a_policy(two_workers: Any, tmp_path: Path) -> None:
 
     scene, policy = write_scene(tmp_path), held_policy(tmp_path)
     arguments: dict[str, Any] = {"robot": "bot", "command": (0.5, 0, 0), "topics": None}
-    with pytest.raises(gloam.UsageError, match="needs a duration above 0 s, not None"):
+    with pytest.raises(gloam.UsageError, match="needs a duration above 0 s, got None"):
         distribute.rollouts(scene, policy, 2, out=tmp_path / "out", **arguments)
     report = distribute.rollouts(scene, policy, 2, out=tmp_path / "out", duration=0.5, **arguments)
     with gloam.load(scene, seed=2) as sim:

@@ -318,7 +318,7 @@ def test_options_of_reset_are_checked():
 
 
 def test_a_vector_of_zero_worlds_is_an_error():
-    with pytest.raises(ValueError, match="at least one"):
+    with pytest.raises(ValueError, match="at least 1"):
         VectorEnv(Reach(), num_envs=0)
 
 

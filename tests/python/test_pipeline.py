@@ -222,9 +222,9 @@ def test_wrong_values_are_errors():
         push(pipeline, np.zeros((2, 4)))
     with pytest.raises(KeyError):
         pipeline.push({"y": np.zeros((2, 3))}, worlds(0, 1))
-    with pytest.raises(ValueError, match="one name"):
+    with pytest.raises(ValueError, match="different names"):
         Pipeline([Term("x", (1,)), Term("x", (1,))], 1)
     with pytest.raises(ValueError, match="needs a term"):
         Pipeline([], 1)
-    with pytest.raises(ValueError, match="history names 'z'"):
+    with pytest.raises(ValueError, match="history: there is no term 'z'"):
         EnvSettings(history={"z": 2}).applied_to([Term("x", (1,))], 0.1)

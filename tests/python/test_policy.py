@@ -139,7 +139,7 @@ def test_two_robots_by_one_policy_and_detach(tmp_path: Path) -> None:
     with gloam.load(scene) as sim:
         one = policy.attach(sim, "bot")
         with policy.attach(sim, sim.robots["two"]) as two:
-            with pytest.raises(gloam.UsageError, match="driven by a policy already"):
+            with pytest.raises(gloam.UsageError, match="already driven by a policy"):
                 policy.attach(sim, "two")
             sim.step()
             assert np.abs(sim.robots["two"].controls).min() > 0 and np.abs(sim.robots["bot"].controls).min() > 0
@@ -167,7 +167,7 @@ def test_commands(sim: gloam.Simulation, tmp_path: Path) -> None:
     assert drive.command(vx=3, vy=-7, yaw_rate=-3) == (1.0, -7.0, -2.0)
     assert drive.command() == (0.0, 0.0, 0.0)
     for wrong in (float("nan"), float("inf"), None):
-        with pytest.raises(gloam.UsageError, match="a commanded vx is a finite number"):
+        with pytest.raises(gloam.UsageError, match="a commanded vx must be a finite number"):
             drive.command(vx=wrong)  # type: ignore[arg-type]
 
 

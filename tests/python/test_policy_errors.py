@@ -42,7 +42,7 @@ def test_names_that_the_robot_has_not(tmp_path: Path) -> None:
                 Policy(write_network(folder / "p.onnx", np.zeros((2, 7))), settings).attach(sim, "bot")
         with pytest.raises(gloam.NotFoundError, match="bot"):
             held_policy(tmp_path).attach(sim, "bt")
-        with pytest.raises(TypeError, match="a robot or its name is expected, not None"):
+        with pytest.raises(TypeError, match="expected a robot or its name, got None"):
             held_policy(tmp_path).attach(sim, None)  # type: ignore[arg-type]
         with pytest.raises(gloam.NotFoundError, match="has no sensor bot/giro.*did you mean 'bot/gyro'"):
             held_policy(tmp_path, '[[observation]]\nterm = "base_ang_vel"\nsensor = "giro"\n', 3).attach(sim, "bot")
@@ -77,7 +77,7 @@ def test_actuators_that_policies_do_not_drive(tmp_path: Path, actuators: str, sa
 def test_a_rate_that_no_number_of_steps_gives(tmp_path: Path) -> None:
     with (
         gloam.load(write_scene(tmp_path), timestep=0.003) as sim,
-        pytest.raises(gloam.UsageError, match="take a timestep of 0.0028"),
+        pytest.raises(gloam.UsageError, match="use a timestep of 0.0028"),
     ):
         held_policy(tmp_path).attach(sim, "bot")
 

@@ -43,10 +43,10 @@ def test_one_action_scale_of_mjlab_is_everybodys(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     "key, value, says",
     [
-        ("observation_terms_scale", "1.000,1.000", "2 entries, there are 5 observation terms"),
+        ("observation_terms_scale", "1.000,1.000", "2 entries for 5 observation terms"),
         ("joint_stiffness", "20.000", None),  # one number is everybody's
-        ("joint_stiffness", "20.000,10.000,5.000", "kp has 3 numbers, the policy has 2 joints"),
-        ("joint_damping", "0.5,many", "no list of numbers"),
+        ("joint_stiffness", "20.000,10.000,5.000", "kp has 3 numbers for 2 joints of the policy"),
+        ("joint_damping", "0.5,many", "not a list of numbers"),
         (
             "observation_names",
             "base_ang_vel,projected_gravity,height_scan,actions,command",
@@ -56,13 +56,13 @@ def test_one_action_scale_of_mjlab_is_everybodys(tmp_path: Path) -> None:
         (
             "observation_terms_history_length",
             "0.000,0.000,4.000,0.000,0.000",
-            "terms give 19 numbers, the network takes 17",
+            "terms have 19 numbers, but the network takes 17",
         ),
         ("observation_terms_history_length", "0.000,0.000,nan,0.000,0.000", "history of nan"),
         ("observation_terms_history_length", "0.000,0.000,inf,0.000,0.000", "history of inf"),
         ("observation_terms_history_length", "0.000,0.000,2.500,0.000,0.000", "history of 2.5"),
         ("default_joint_pos", "nan,0.3", "finite"),
-        ("joint_names", "hip,hip", "names hip twice"),
+        ("joint_names", "hip,hip", "lists hip twice"),
     ],
 )
 def test_wrong_metadata_of_mjlab(tmp_path: Path, key: str, value: str, says: str | None) -> None:
@@ -92,19 +92,19 @@ def test_patterns_exact_names_and_later_lines_win(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     "old, new, says",
     [
-        ("rate = 50", "rate = 0", "rate is a finite number above 0"),
-        ("rate = 50", "rate = true", "rate is a number"),
+        ("rate = 50", "rate = 0", "rate must be a finite number above 0"),
+        ("rate = 50", "rate = true", "rate must be a number"),
         ("rate = 50", "rates = 50", r"\[policy\] has no 'rates'"),
-        ("kp = [10.0, 20.0]", "", r"does not tell \[policy\] kp"),
-        ("kp = [10.0, 20.0]", "kp = [10.0]", "kp has 1 numbers, the policy has 2 joints"),
+        ("kp = [10.0, 20.0]", "", r"does not contain \[policy\] kp"),
+        ("kp = [10.0, 20.0]", "kp = [10.0]", "kp has 1 numbers for 2 joints of the policy"),
         ("kp = [10.0, 20.0]", "kp = [10.0, -1.0]", "kp of hip is negative"),
         ("kp = [10.0, 20.0]", "kp = { hip = 1.0 }", "kp has no number for knee"),
-        ("kp = [10.0, 20.0]", 'kp = { "ankle" = 1.0 }', "'ankle' fits no joint"),
-        ("kp = [10.0, 20.0]", 'kp = { "(" = 1.0 }', "no regular expression"),
+        ("kp = [10.0, 20.0]", 'kp = { "ankle" = 1.0 }', "'ankle' matches no joint"),
+        ("kp = [10.0, 20.0]", 'kp = { "(" = 1.0 }', "not a valid regular expression"),
         ("kp = [10.0, 20.0]", "kp = [10.0, nan]", "finite"),
-        ("kp = [10.0, 20.0]", 'kp = "stiff"', "kp is a number"),
-        ('joints = ["knee", "hip"]', 'joints = "knee"', "joints is a list of names"),
-        ('joints = ["knee", "hip"]', 'joints = ["knee"]', "kp has 2 numbers, the policy has 1 joints"),
+        ("kp = [10.0, 20.0]", 'kp = "stiff"', "kp must be a number"),
+        ('joints = ["knee", "hip"]', 'joints = "knee"', "joints must be a list of names"),
+        ('joints = ["knee", "hip"]', 'joints = ["knee"]', "kp has 2 numbers for 1 joints of the policy"),
         (
             'term = "joint_vel"',
             'term = "joint_velo"',
@@ -112,20 +112,20 @@ def test_patterns_exact_names_and_later_lines_win(tmp_path: Path) -> None:
         ),
         ('term = "joint_vel"', "scale = 2", "needs a term"),
         ('term = "joint_vel"', 'term = "joint_vel"\nscales = 2', "has no 'scales'"),
-        ('term = "joint_vel"', 'term = "joint_vel"\nscale = [1, 2, 3]', "scale has 3 numbers, the term has 2"),
+        ('term = "joint_vel"', 'term = "joint_vel"\nscale = [1, 2, 3]', "scale has 3 numbers, but the term has 2"),
         ('term = "joint_vel"', 'term = "joint_vel"\nclip = [1, -1]', "low 1 is not below high -1"),
-        ('term = "joint_vel"', 'term = "joint_vel"\nclip = [1]', r"clip is \[low, high\]"),
-        ('term = "joint_vel"', 'term = "joint_vel"\nhistory = 0', "history is a whole number from 1"),
+        ('term = "joint_vel"', 'term = "joint_vel"\nclip = [1]', r"clip must be \[low, high\]"),
+        ('term = "joint_vel"', 'term = "joint_vel"\nhistory = 0', "history must be a whole number from 1"),
         (
             'term = "joint_vel"',
             'term = "joint_vel"\nhistory = 2',
-            "give 9 numbers, the network takes 7.*joint_pos 2, joint_vel 4",
+            "have 9 numbers, but the network takes 7.*joint_pos 2, joint_vel 4",
         ),
-        ("[policy]", "[polices]\n[policy]", r"there is no \[polices\]"),
+        ("[policy]", "[polices]\n[policy]", r"cannot contain \[polices\]"),
         ("action_scale = 0.5", 'action_scale = 0.5\nhistory_start = "ones"', "history_start"),
         ("action_scale = 0.5", "action_scale = 0.5\ncommand_ranges = { vz = 1 }", "command_ranges has no 'vz'"),
         ("action_scale = 0.5", 'action_scale = 0.5\nmodel_joints = { ankle = "a" }', "model_joints has no 'ankle'"),
-        ("action_scale = 0.5", "action_scale = = 0.5", "it is no TOML"),
+        ("action_scale = 0.5", "action_scale = = 0.5", "is not valid TOML"),
     ],
 )
 def test_wrong_settings(tmp_path: Path, old: str, new: str, says: str) -> None:
@@ -150,11 +150,11 @@ def test_wrong_networks(tmp_path: Path) -> None:
     with pytest.raises(gloam.IoError, match="no such file"):
         Policy(tmp_path / "none.onnx", settings)
     (tmp_path / "text.onnx").write_text("this is no network")
-    with pytest.raises(gloam.InputError, match="no network"):
+    with pytest.raises(gloam.InputError, match="OpenVINO cannot read the network"):
         Policy(tmp_path / "text.onnx", settings)
     with pytest.raises(gloam.IoError, match="cannot be read"):
         Policy(write_network(tmp_path / "p.onnx", np.zeros((2, 7))), tmp_path / "none.toml")
-    with pytest.raises(gloam.InputError, match="there are 2 joints, the network gives 3 numbers"):
+    with pytest.raises(gloam.InputError, match="there are 2 joints, but the network outputs 3 numbers"):
         Policy(write_network(tmp_path / "p.onnx", np.zeros((3, 7))), settings)
     with pytest.raises(gloam.UnsupportedError, match=r"2 inputs \(obs, time_step\)"):
         Policy(write_network(tmp_path / "p.onnx", np.zeros((2, 7)), inputs=("obs", "time_step")), settings)

@@ -51,7 +51,7 @@ TEST_F(OwnFile, IsWrittenByOneOnly) {
 TEST_F(OwnFile, IsMissedWhenItIsTakenAway) {
   EXPECT_EQ(says(check_in_place(fd_, file_, 10)), "ok");
   EXPECT_EQ(says(check_not_cut(fd_, file_, 11)),
-            "was cut to 10 of 11 bytes while it was being written");
+            "was truncated to 10 of 11 bytes while it was being written");
   fs::rename(file_, folder_ / "b");
   EXPECT_EQ(says(check_not_cut(fd_, file_, 10)), "ok");
   EXPECT_EQ(says(check_in_place(fd_, file_, 10)),

@@ -301,7 +301,7 @@ TEST(GltfErrors, AnIndexOutOfRangeAndANanAreNamed) {
 
 TEST(GltfErrors, DeepAndCrowdedJsonIsRefusedBeforeItIsParsed) {
   const std::string deep = "{\"asset\":" + std::string(1000000, '[');
-  EXPECT_THAT(error_of(read_text(deep, "a.gltf")), HasSubstr("nests deeper than 64 levels"));
+  EXPECT_THAT(error_of(read_text(deep, "a.gltf")), HasSubstr("nested more than 64 levels deep"));
   const std::string crowded = "{\"asset\":[" + std::string(kMaxJsonValues, ',') + "]}";
   EXPECT_THAT(error_of(read_text(crowded, "a.gltf")), HasSubstr("values; the limit is"));
   EXPECT_THAT(error_of(read_text("{\"asset\": {\"version\": ", "a.gltf")),

@@ -196,19 +196,19 @@ TEST(McapReader, AnswersALyingChunk) {
   zstd.resize(ZSTD_compress(zstd.data(), zstd.size(), records.data(), size, 3));
   const uint32_t crc = crc32_of(records);
   const std::vector<std::pair<RawChunk, std::string>> cases = {
-      {{0, 9000000, size, crc + 1, "", records}, "CRC is wrong"},
-      {{0, 9000000, size + 1, crc, "", records}, "that declares"},
+      {{0, 9000000, size, crc + 1, "", records}, "CRC of a chunk is wrong"},
+      {{0, 9000000, size + 1, crc, "", records}, "but declares"},
       {{0, 9000000, size + 1, crc, "zstd", zstd}, "after decompression"},
       {{0, 9000000, size - 1, crc, "zstd", zstd}, "zstd: "},
       {{0, 9000000, size, crc, "zstd", records}, "zstd: "},
       {{0, 9000000, size, crc, "lz4", records}, "lz4: "},
       {{0, 9000000, size - 1, 0, "lz4", lz4_frame(records, LZ4F_blockIndependent)}, "lz4: "},
       {{0, 9000000, size + 1, 0, "lz4", lz4_frame(records, LZ4F_blockIndependent)}, "lz4: "},
-      {{0, 9000000, size, crc, "bz2", records}, "'bz2', which is not known"},
-      {{0, 9000000, uint64_t{64} << 20, 0, "zstd", bomb}, "compressed ones"},
-      {{0, 9000000, uint64_t{1} << 40, 0, "zstd", zstd}, "up to"},
+      {{0, 9000000, size, crc, "bz2", records}, "unsupported compression 'bz2'"},
+      {{0, 9000000, uint64_t{64} << 20, 0, "zstd", bomb}, "compressed bytes"},
+      {{0, 9000000, uint64_t{1} << 40, 0, "zstd", zstd}, "the limit is"},
       {{0, 9000000, size - 1, 0, "", LogBytes(records.begin(), records.end() - 1)},
-       "parts of records"},
+       "incomplete records"},
   };
   for (const auto& [chunk, cause] : cases) {
     LogBytes log = log_front();
@@ -221,9 +221,9 @@ TEST(McapReader, AnswersALyingChunk) {
 }
 
 TEST(McapReader, AnswersFilesThatAreNoLogs) {
-  EXPECT_THAT(open_error({}), testing::HasSubstr("no MCAP log"));
+  EXPECT_THAT(open_error({}), testing::HasSubstr("not an MCAP log"));
   EXPECT_THAT(open_error({'#', 'R', 'O', 'S', 'B', 'A', 'G', ' '}),
-              testing::HasSubstr("test.mcap: byte 0: is no MCAP log"));
+              testing::HasSubstr("test.mcap: byte 0: is not an MCAP log"));
   LogBytes later = write_log({});
   later[5] = '1';
   EXPECT_THAT(open_error(later), testing::HasSubstr("version 0"));
@@ -305,7 +305,7 @@ TEST(McapReader, AnswersAnIndexOfOtherTimes) {
   }
   append_footer(&other, {start, 0, 0}, start);
   append_magic(&other);
-  EXPECT_THAT(open_error(other), testing::HasSubstr("holds a message of 0 ns"));
+  EXPECT_THAT(open_error(other), testing::HasSubstr("contains a message at 0 ns"));
 }
 
 }  // namespace

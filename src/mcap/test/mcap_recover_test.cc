@@ -94,8 +94,8 @@ TEST(McapRecover, EachOfTheFirst500WritesMayFail) {
       ASSERT_FALSE(status.ok());
       EXPECT_THAT(status.error().message,
                   testing::HasSubstr(failure == Failure::kIo ? "Input/output error" : "No space"));
-      EXPECT_THAT(status.error().message,
-                  testing::HasSubstr(std::to_string(writer.safe_bytes()) + " bytes are safe"));
+      EXPECT_THAT(status.error().message, testing::HasSubstr(std::to_string(writer.safe_bytes()) +
+                                                             " bytes of the log are safe"));
       const size_t size = bytes->size();
       EXPECT_FALSE(writer.add_message(view(messages[0])).ok()) << "it refuses what follows";
       EXPECT_FALSE(writer.flush().ok());

@@ -278,7 +278,7 @@ TEST_F(ReportFolder, WhatCannotBeReadIsTold) {
   ASSERT_TRUE(outcome.ok());
   EXPECT_EQ(outcome->runs, 3u);
   EXPECT_EQ(outcome->left_out.size(), 3u);
-  EXPECT_THAT(page(), HasSubstr("Left out"));
+  EXPECT_THAT(page(), HasSubstr("Omitted"));
   EXPECT_FALSE(write_report({.runs = {no_json}, .out = folder_ / "x.html"}).ok());
   EXPECT_FALSE(write_report({.runs = {}, .out = folder_ / "x.html"}).ok());
   EXPECT_FALSE(write_report({.runs = {good}, .out = folder_ / "no" / "x.html"}).ok());

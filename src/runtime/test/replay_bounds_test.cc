@@ -56,15 +56,16 @@ TEST(StateOrders, FindNumbersThatNoRunMakes) {
   EXPECT_THAT(refused(state_at(2, 101 + kFar, 101 * kBoundsStep)), HasSubstr("more than 10000000"));
   EXPECT_THAT(refused(state_at(2, kFar, static_cast<double>(kFar) * kBoundsStep)),
               HasSubstr("more than"));
-  EXPECT_THAT(refused(state_at(2, 5000, 101 * kBoundsStep)), HasSubstr("do not fit"));
-  EXPECT_THAT(refused(state_at(2, 101, 7)), HasSubstr("do not fit"));
-  EXPECT_THAT(refused(state_at(2, 101, std::nan(""))), HasSubstr("do not fit"));
-  EXPECT_THAT(refused(state_at(2, 100, 100 * kBoundsStep)), HasSubstr("follows one at step 100"));
-  EXPECT_THAT(refused(state_at(2, -1, 0)), HasSubstr("follows one at step 100"));
-  EXPECT_THAT(refused(state_at(1, 0, 0)), HasSubstr("follows one of run 2"));
+  EXPECT_THAT(refused(state_at(2, 5000, 101 * kBoundsStep)), HasSubstr("do not match"));
+  EXPECT_THAT(refused(state_at(2, 101, 7)), HasSubstr("do not match"));
+  EXPECT_THAT(refused(state_at(2, 101, std::nan(""))), HasSubstr("do not match"));
+  EXPECT_THAT(refused(state_at(2, 100, 100 * kBoundsStep)),
+              HasSubstr("follows a state at step 100"));
+  EXPECT_THAT(refused(state_at(2, -1, 0)), HasSubstr("follows a state at step 100"));
+  EXPECT_THAT(refused(state_at(1, 0, 0)), HasSubstr("follows a state of run 2"));
   EXPECT_THAT(refused(state_at(-1, 0, 0)), HasSubstr("run -1"));
   EXPECT_THAT(refused(state_at(3, kMost, 0)), HasSubstr("more than"));
-  EXPECT_THAT(refused(state_at(3, 1000, kBoundsStep)), HasSubstr("do not fit"));
+  EXPECT_THAT(refused(state_at(3, 1000, kBoundsStep)), HasSubstr("do not match"));
 }
 
 constexpr const char* kBoundsBall = R"(<mujoco model="ball"><option timestep="0.002"/>
@@ -134,7 +135,7 @@ TEST_F(ChangedLogs, ThatGoToAndFroBetweenRunsAreRefused) {
   const fs::path mixed = changed([](int64_t place, gloam_msgs::State* s) { s->run = place % 2; });
   const auto verified = verify_log(mixed, {}, {});
   ASSERT_FALSE(verified.ok());
-  EXPECT_THAT(verified.error().message, HasSubstr("follows one of run 1"));
+  EXPECT_THAT(verified.error().message, HasSubstr("follows a state of run 1"));
 }
 
 // A log may leave out states; stopping does not wait for the next one.
@@ -155,7 +156,7 @@ TEST_F(ChangedLogs, AreNotReplacedByTheirReplay) {
   replay.request.log.overwrite = true;
   const auto itself = replay_log(replay, {});
   ASSERT_FALSE(itself.ok());
-  EXPECT_THAT(itself.error().message, HasSubstr("would replace"));
+  EXPECT_THAT(itself.error().message, HasSubstr("would overwrite"));
   replay.request.log.file.clear();
   replay.request.out = folder_.path();
   replay.request.overwrite = true;
