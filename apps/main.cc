@@ -32,9 +32,9 @@ Status check_environment() {
 
 int run_program(int argc, char** argv) {
   CLI::App app{
-      "Gloam: a robotics simulator with unmodified MuJoCo physics and path-traced sensors.\nThe "
-      "source tree adds: ./gloam setup | test | bench | mitsuba | gallery | docs | pack | python | "
-      "wheel | doctor"};
+      "Gloam: a robotics simulator with unmodified MuJoCo physics and path-traced sensors.\nAlso "
+      "in the source tree: ./gloam setup | test | bench | mitsuba | gallery | docs | pack | python "
+      "| wheel | doctor"};
   app.name("gloam");
   app.require_subcommand(1);
   app.fallthrough();

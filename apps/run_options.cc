@@ -57,8 +57,8 @@ void refuse_beside_log(const CLI::App& command, const std::vector<const CLI::Opt
 void RenderFlags::add_to(CLI::App& command) {
   command
       .add_option("--spp", spp,
-                  "Samples per pixel; default: the scene's, or 4; with --error: the most per "
-                  "pixel, default 4096")
+                  "Samples per pixel, or the maximum if --error is given; default: the scene's, or "
+                  "4; with --error: 4096")
       ->check(CLI::Range(1, 65536));
   command
       .add_option("--error", error,
@@ -72,8 +72,8 @@ void RenderFlags::add_to(CLI::App& command) {
       ->check(CLI::Range(1, 64));
   command
       .add_option("--tier", tier,
-                  "Rendering method. path: unbiased light; fast: interactive, filtered; direct: "
-                  "one ambient light")
+                  "Rendering tier. path: unbiased light; fast: interactive, filtered; direct: one "
+                  "ambient light")
       ->check(CLI::IsMember({"path", "fast", "direct"}));
   command
       .add_option("--device", device,

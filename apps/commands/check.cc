@@ -146,8 +146,8 @@ void add_check(CLI::App& app, Globals& globals, Action& action) {
   add_access_options(*sub, command->access, command->packages);
   sub->footer(
       "Compares all sizes, options and arrays of mjModel bit for bit. The exit code is 1 if "
-      "anything differs or a file\ndoes not load; such a file is also loaded by stock MuJoCo, "
-      "which reads every file that it refers to.\nExamples:\n  gloam check robot.urdf --package "
+      "anything differs or a file\ndoes not load. In that case stock MuJoCo tries to load it too, "
+      "and may read any file that it refers to.\nExamples:\n  gloam check robot.urdf --package "
       "my_robot=.\n  gloam check robots/*.xml --json");
   sub->callback([&globals, &action, command] {
     action = [&globals, command] { return check(*command, globals); };

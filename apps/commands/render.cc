@@ -99,8 +99,8 @@ void add_render(CLI::App& app, Globals& globals, Action& action) {
   command->options.add_to(*sub);
   sub->get_option("--output")->description(channel_help());
   sub->get_option("--spp")->description(
-      fmt::format("Samples per pixel; default: {}, not the scene's; with --error: the most per "
-                  "pixel, default 4096",
+      fmt::format("Samples per pixel, or the maximum if --error is given; default: {}, regardless "
+                  "of the scene; with --error: 4096",
                   kStillSamples));
   sub->add_option("--time", command->time, "Simulation time of the image in seconds; default: 0")
       ->check(non_negative_number());

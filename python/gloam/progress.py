@@ -11,7 +11,7 @@ from contextlib import contextmanager
 from typing import Any, TextIO
 
 Tell = Callable[[str, float, float, float], bool | None]
-"""What a job tells: (task, share done 0 … 1, seconds so far, seconds left or < 0 = unknown) -> False to stop."""
+"""Progress of a job: (task, share done 0 … 1, seconds so far, seconds left or < 0 = unknown) -> False to cancel."""
 
 ProgressLike = Tell | bool | None
 _SILENCE = 2.0  # [s] before anything is shown
