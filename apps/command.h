@@ -44,13 +44,13 @@ int fail(const Error& error);
 CLI::Validator positive_number();
 CLI::Validator non_negative_number();
 
-/// Adds the options that say how far a model's files may reach.
+/// Adds the options that limit the files which a model may read.
 void add_access_options(CLI::App& command, FileAccess& access, std::vector<std::string>& packages);
 /// Parses `packages` (NAME=FOLDER) into `access`.
 Status apply_packages(FileAccess& access, const std::vector<std::string>& packages);
-/// World::compile; Ctrl-C ends the process meanwhile, stderr shows how far it is. Tells on stderr
-/// what is odd about the scene, and what of it is not supported.
-/// `keyframe`: as of World::compile_at, "" = none.
+/// World::compile with progress on stderr; Ctrl-C ends the process meanwhile. Prints notes about
+/// the scene and its unsupported elements on stderr. `keyframe`: as of World::compile_at, "" =
+/// none.
 Result<World> compile(const Scene& scene, const Globals& globals, const std::string& keyframe = "");
 /// "640x480" -> width, height.
 Status parse_resolution(const std::string& text, int& width, int& height);

@@ -12,7 +12,7 @@ void catch_interrupts();
 bool interrupted();
 
 /// The job checks interrupted() from now on and has files to finish. It gets a moment to stop; if
-/// it does not react, the process ends with an error that says so.
+/// it does not react, the process ends with an error.
 void stop_on_interrupt();
 /// The job has stopped and finishes its files, which may take longer.
 void finish_on_interrupt();

@@ -9,8 +9,8 @@
 
 namespace gloam::cli {
 
-/// `json` as text. Bytes that are no UTF-8, as a file's path may have, become U+FFFD; what a
-/// terminal would obey is escaped, which JSON allows in strings, and elsewhere there is none of it.
+/// `json` as text. Bytes that are not UTF-8, as in paths of files, become U+FFFD. Control
+/// characters of terminals are escaped, which JSON allows in strings; they do not occur elsewhere.
 template <class Json>
 std::string json_text(const Json& json, int indent = 2) {
   return printable(json.dump(indent, ' ', false, Json::error_handler_t::replace), "\n");

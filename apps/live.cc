@@ -112,7 +112,7 @@ int run_live(LiveRun run, const LiveCommand& command, EndOnInterrupt& starting) 
   begin(run, command);
   const Status status = keep_running(run, command, bridges.get(), log.get());
   if (log != nullptr) finish_on_interrupt();
-  bridges.reset();  // no client changes what the log ends with
+  bridges.reset();  // no client changes the end of the log
   if (page != nullptr) page->stop();
   int code = status.ok() ? 0 : fail(status.error());
   const SimulationStats stats = simulation.stats();

@@ -24,7 +24,7 @@ constexpr std::array kCommands = {add_demo,     add_run,     add_record, add_rep
                                   add_evaluate, add_report,  add_check,  add_cache,
                                   add_props,    add_convert, add_schema, add_completion};
 
-/// Variables of the environment that hold what they must.
+/// Checks variables of the environment.
 Status check_environment() {
   const Result<uint64_t> limit = cache_limit();
   return limit.ok() ? Status() : Status(limit.error());

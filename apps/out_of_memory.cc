@@ -19,7 +19,7 @@ void on_terminate() {
     end_out_of_memory();
   } catch (const std::system_error& error) {
     if (is_want_of_memory(error)) end_out_of_memory();
-  } catch (...) {  // the previous handler tells of it
+  } catch (...) {  // the previous handler reports it
   }
   previous_handler();
   std::abort();
@@ -36,7 +36,7 @@ void end_out_of_memory() {
   ::_exit(1);
 }
 
-// pthread_create says EAGAIN.
+// pthread_create reports EAGAIN.
 bool is_want_of_memory(const std::system_error& error) {
   return error.code() == std::errc::resource_unavailable_try_again ||
          error.code() == std::errc::not_enough_memory;

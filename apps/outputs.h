@@ -15,7 +15,7 @@ Status check_outputs(const std::vector<std::string>& outputs);
 /// Error: also for outputs of whole recordings, which stills do not have.
 Status check_still_outputs(const std::vector<std::string>& outputs);
 
-/// Tells on stderr which of them nothing in the scene delivers.
+/// Prints on stderr which of them the scene cannot produce.
 void tell_void_outputs(const std::vector<std::string>& outputs, const Scene& scene,
                        const World& world);
 

@@ -1,6 +1,6 @@
 #pragma once
-// The one way to print: what comes from files, names above all, is shown and never obeyed by the
-// terminal (gloam/text.h).
+// The only way to print: control characters in text from files, such as names, are shown and never
+// executed by the terminal (gloam/text.h).
 
 #include <fmt/format.h>
 

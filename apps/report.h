@@ -1,5 +1,5 @@
 #pragma once
-// Runs a job and tells the user about it: progress, where the results lie, JSON.
+// Runs a job and reports on it: progress, the place of the results, JSON.
 
 #include "command.h"
 

@@ -34,8 +34,8 @@ void SceneOptions::add_keyframe_to(CLI::App& command) {
 
 namespace {
 
-// A log that is gone on from has its World: what would change it is refused by name, unless it is
-// `kept`: a matter of the new run alone.
+// A log that is resumed has its own World: options that would change it are rejected by name,
+// except the `kept` ones, which affect only the new run.
 void refuse_beside_log(const CLI::App& command, const std::vector<const CLI::Option*>& options) {
   constexpr std::string_view kKept[] = {"--camera", "--resolution", "--threads"};
   const CLI::Option* at = command.get_option_no_throw("--at");

@@ -27,7 +27,7 @@ struct SceneOptions {
   Result<World> compile(const std::string& file, const Globals& globals);
 };
 
-/// How pictures are made, instead of as the scene says.
+/// Rendering options that replace the scene's.
 struct RenderFlags {
   std::optional<double> ev100, error;
   std::optional<int> spp, max_depth;

@@ -1,5 +1,5 @@
 #pragma once
-// The words of the command line: what may be typed, and what was meant by what may not.
+// The words of the command line, and suggestions for misspelt ones.
 
 #include <CLI/CLI.hpp>
 #include <string>
@@ -10,8 +10,8 @@
 
 namespace gloam::cli {
 
-/// Names and descriptions of all commands, those of the start script included, which are not part
-/// of the program.
+/// Names and descriptions of all commands, including the commands of the start script, which are
+/// not part of the program.
 std::vector<std::pair<std::string, std::string>> commands(const CLI::App& root);
 /// "--name" and "-n" of an App's own options.
 std::vector<std::string> option_names(const CLI::App& app);

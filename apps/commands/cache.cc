@@ -1,4 +1,4 @@
-// gloam cache: what is kept on disk so that a second start is faster.
+// gloam cache: lists or clears the cache on disk that makes later starts faster.
 
 #include <fmt/chrono.h>
 #include <fmt/format.h>

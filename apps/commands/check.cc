@@ -1,4 +1,4 @@
-// gloam check: whether models are stock MuJoCo's, and come back from an export as they went.
+// gloam check: compares models with stock MuJoCo and with their own exports.
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

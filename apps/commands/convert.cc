@@ -1,4 +1,4 @@
-// gloam convert: what a mesh file becomes as an [[object]], and how well its colliders fit.
+// gloam convert: the [[object]] that a mesh file produces, and how well its colliders fit.
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-// gloam info: what a scene or model holds, and what of it Gloam cannot do.
+// gloam info: the contents of a scene or model, and its unsupported elements.
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -91,7 +91,7 @@ void print_text(const WorldInfo& info, const NotDrawn& not_drawn,
     if (!errors->empty()) say("\n{} ({})\n", title, errors->size());
     for (const Error& error : *errors) say("  {}\n", error.to_string());
   }
-  // MuJoCo's own remarks tell of what it leaves out.
+  // MuJoCo's own remarks report elements that it ignores.
   const bool is_ignored = std::ranges::any_of(info.notes, [](const Error& note) {
     return note.kind == ErrorKind::kUnsupported || note.message.starts_with("MuJoCo: ");
   });

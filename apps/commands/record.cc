@@ -1,4 +1,4 @@
-// gloam record: a run as a log that ROS 2's tools open and `gloam replay` steps again.
+// gloam record: records a run to a log for ROS 2 tools and `gloam replay`.
 
 #include <filesystem>
 

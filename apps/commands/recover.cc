@@ -1,4 +1,4 @@
-// gloam recover: a whole log from one that is cut or damaged.
+// gloam recover: repairs a truncated or damaged log.
 
 #include <fmt/format.h>
 

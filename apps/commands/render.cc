@@ -15,7 +15,7 @@
 namespace gloam::cli {
 namespace {
 
-constexpr int kStillSamples = 64;  // a scene's own are those of its videos
+constexpr int kStillSamples = 64;  // the scene's number is for videos
 
 struct RenderCommand {
   std::string file, out = ".";
@@ -23,7 +23,7 @@ struct RenderCommand {
   double time = 0;
 };
 
-// Channels that a still can show: all but those of all frames together.
+// Channels that a still can have: all except channels of all frames together.
 std::string channel_help() {
   std::string plain = "Channels:", modelled;
   for (const CameraChannel& channel : kCameraChannels) {

@@ -1,5 +1,4 @@
-// gloam replay: steps a log's run again, to say whether it comes out the same, or to look at it
-// under another sky.
+// gloam replay: replays the run of a log, to verify it or to record it with another appearance.
 
 #include <fmt/format.h>
 

@@ -66,7 +66,7 @@ int run_world(const World& world, RunRequest request, const RunCommand& command,
   const bool is_live = command.live.any(scene.bridge);
   if (request.out.empty() && (is_live ? command.mcap : scene.bare_model.empty()))
     request.out = std::filesystem::path("results") / scene.name;
-  // The World of a log says what [record] said then; elsewhere the flag is in the scene.
+  // The World of a log has the [record] table of that run; otherwise the flag is in the scene.
   if (request.from && command.mcap && !request.out.empty())
     request.log.file = request.out / "run.mcap";
   request.overwrite = command.overwrite;
@@ -88,7 +88,7 @@ int run_world(const World& world, RunRequest request, const RunCommand& command,
   return keep_live(world, request, command);
 }
 
-// Goes on from an instant of a log, in its World.
+// Resumes from an instant of a log, in its World.
 int run_on(const RunCommand& command, const Globals& globals) {
   const RunOptions& o = command.options;
   if (!o.settings.empty() || !o.outputs.empty() || o.seed || o.timestep || !o.tier.empty())

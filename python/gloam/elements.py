@@ -120,7 +120,7 @@ class Element:
         return self._handle
 
     def _changed(self) -> None:
-        """Looks up what depends on the World."""
+        """Looks up the data that depends on the World."""
 
     def forget_world(self) -> None:
         """Releases arrays and handles; they are looked up again when needed."""

@@ -1,5 +1,5 @@
 #pragma once
-// Reading and writing whole files, with errors that say what to do.
+// Reading and writing whole files, with errors that name a remedy.
 
 #include <cstdint>
 #include <filesystem>

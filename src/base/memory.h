@@ -14,7 +14,7 @@ namespace gloam {
 
 struct MemoryRoom {
   uint64_t bytes = UINT64_MAX;  ///< that this process may still take
-  std::string limit;            ///< what sets that bound, after "by"; empty: nothing known
+  std::string limit;            ///< the limit that sets that bound, after "within"; empty: unknown
 };
 
 /// The least of: memory of the machine that is free or can be freed, what is left of the limits of

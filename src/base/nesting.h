@@ -1,7 +1,7 @@
 #pragma once
 // Depth of a stranger's text, found by one pass over its characters before a library reads it:
 // parsers, and whoever walks what they made, recurse, and a stack ends without a word. Whether the
-// text is well-formed at all is the parser's business; what stands behind a syntax error is never
+// text is well-formed at all is the parser's business; text behind a syntax error is never
 // reached by it.
 
 #include <cstddef>

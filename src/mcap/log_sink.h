@@ -16,7 +16,7 @@ class LogSink {
   virtual ~LogSink() = default;
   /// Appends all bytes. After an error the end may hold a part of them.
   virtual Status write(std::span<const uint8_t> bytes) = 0;
-  /// Returns when what was written outlives a loss of power.
+  /// Returns when all written data survives a power failure.
   virtual Status sync() = 0;
   /// May be called twice.
   virtual Status close() = 0;

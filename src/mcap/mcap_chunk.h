@@ -16,7 +16,7 @@ namespace gloam {
 /// Memory of chunks, for use after use.
 struct McapChunkBuffers {
   std::vector<uint8_t> record;   ///< as in the log
-  std::vector<uint8_t> records;  ///< what the chunk holds, decompressed
+  std::vector<uint8_t> records;  ///< records of the chunk, decompressed
 };
 
 /// Checks what a chunk record declares against its content and the limits; what is wrong, or "".

@@ -1,5 +1,5 @@
 #pragma once
-// A whole log from one that is cut or damaged: what is whole and whose CRC is right is kept.
+// Repairs a truncated or damaged log: keeps all complete records with a correct CRC.
 
 #include <cstdint>
 #include <filesystem>
@@ -24,7 +24,7 @@ struct McapRecovery {
   std::vector<std::string> damage;  ///< "byte N: cause", the first 20
 };
 
-/// Writes what is whole in `source` into `writer`, in the order of the log, and finishes it.
+/// Writes the undamaged records of `source` to `writer`, in the order of the log, and finishes it.
 /// Errors: no MCAP log, a disk. Where the writer's fails, its log is one to recover again.
 Result<McapRecovery> recover_log(const LogSource& source, const McapLimits& limits,
                                  McapWriter* writer);

@@ -1,4 +1,4 @@
-// gloam._core: include/gloam/ for Python. What users write is python/gloam/.
+// gloam._core: bindings of include/gloam/. Users import the package in python/gloam/.
 
 #include "core.h"
 #include "gloam/program.h"

@@ -1,5 +1,6 @@
 #pragma once
-// Tables of numbers as CSV (RFC 4180, LF line ends), one row per write: what was written is whole.
+// Tables of numbers as CSV (RFC 4180, LF line ends), one row per write, so that written rows are
+// complete.
 
 #include <memory>
 #include <span>

@@ -15,7 +15,7 @@ class FileStore {
  public:
   virtual ~FileStore() = default;
   virtual Status make_folder(const std::filesystem::path& path) = 0;
-  /// Whole or not at all; replaces what was there.
+  /// Writes the whole file or nothing; replaces an existing file.
   virtual Status write_file(const std::filesystem::path& path, std::span<const uint8_t> bytes) = 0;
   /// A file that grows.
   virtual Result<std::unique_ptr<ByteSink>> create(const std::filesystem::path& path) = 0;

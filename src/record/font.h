@@ -16,7 +16,7 @@ struct Glyph {
   std::vector<std::vector<Vec2f>> lines;  ///< x to the right, y up, base line at 0
 };
 
-/// '?' for what is not printable ASCII.
+/// '?' for characters that are not printable ASCII.
 Glyph make_glyph(char c);
 
 }  // namespace gloam

@@ -73,7 +73,7 @@ class Lanes {
           if (!failure->failed()) failure->attempt([&] { return recorder->add(*item); });
         });
   }
-  /// Writes what is queued and ends the threads.
+  /// Writes all queued items and ends the threads.
   void close() {
     for (auto& [name, lane] : lanes_) lane->worker.close();
   }

@@ -22,7 +22,7 @@ class Worker {
 
   /// May be called from any thread, not after close().
   void post(std::function<void()> job);
-  /// Does what is queued and ends the thread. May be called twice.
+  /// Runs all queued jobs and ends the thread. May be called twice.
   void close();
   uint64_t dropped() const;
 

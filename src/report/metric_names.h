@@ -1,5 +1,5 @@
 #pragma once
-// Names of metrics: their units, and what is better.
+// Names of metrics: their units, and whether less or more is better.
 
 #include <string>
 
@@ -12,7 +12,7 @@ struct MetricName {
 };
 MetricName split_metric_name(const std::string& name);
 
-/// Is less of it better, or more? Of most numbers nobody can tell.
+/// Whether less or more of it is better; unknown for most numbers.
 enum class Better { kUnknown, kLess, kMore };
 Better better_of(const std::string& name);
 

@@ -76,9 +76,10 @@ std::string header_section(const ReportContent& content) {
     std::string names;
     for (const size_t i : motion.runs)
       names += (names.empty() ? "" : ", ") + html_text(content.runs[i].label);
-    const std::string proof = motion.label.empty() ? "their robots have the same poses at all times"
-                                                   : "they end in the same state (hash <code>" +
-                                                         html_text(motion.label) + "</code>)";
+    const std::string proof =
+        motion.label.empty()
+            ? "their robots are at the same positions at all times"
+            : "they end in the same state (hash <code>" + html_text(motion.label) + "</code>)";
     out += fmt::format(
         "<p class=\"note\"><b>One motion:</b> {}: {}. They differ only in sensor data and "
         "measurements.</p>",

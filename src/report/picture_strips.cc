@@ -186,7 +186,7 @@ std::vector<PictureStrip> make_strips(const std::vector<RunResults>& runs,
         StripPicture picture;
         const size_t index = nearest_time(source.pictures.times(), t);
         picture.time = source.pictures.times()[index];
-        // One that is damaged tells of the others.
+        // A damaged one stands for the others.
         auto image = is_damaged ? Result<Image8>(Image8()) : source.pictures.picture(index);
         if (!image.ok()) {
           left_out->push_back(image.error());

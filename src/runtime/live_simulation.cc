@@ -70,7 +70,7 @@ Result<std::unique_ptr<LiveSimulation>> LiveSimulation::create(const World& worl
     for (RobotController& c : controllers)
       GLOAM_TRY_STATUS(live->simulator_->add_controller(c.robot, std::move(c.controller), c.rate));
   }
-  // Exposure goes on from step 0, whether or not anyone opens the camera.
+  // Exposure runs from step 0, whether or not anyone opens the camera.
   if (how.metering == Metering::kAlways)
     GLOAM_TRY_STATUS(live->meters_.open(live->stream_context()));
   // The thread starts with the first call that moves time: hooks, controllers and cameras come
@@ -169,7 +169,7 @@ Status LiveSimulation::stopped_by_the_user() {
 }
 
 Status LiveSimulation::run_until(int64_t step) {
-  if (simulator_->is_on_sim_thread()) return simulator_->wait();  // says that it cannot
+  if (simulator_->is_on_sim_thread()) return simulator_->wait();  // returns the error
   restart_speed_clock();
   paused_ = false;
   step = std::min(step, simulator_->end());

@@ -217,7 +217,7 @@ Status drain_cameras(const RunProgress::Cameras& cameras, const std::function<St
   return {};
 }
 
-// Goes on from the request's checkpoint, in `world`, and posts its Commands.
+// Resumes from the request's checkpoint, in `world`, and posts its Commands.
 Status begin_where_asked(LiveSimulation& simulation, const World& world,
                          const RunRequest& request) {
   if (request.from) {

@@ -22,7 +22,7 @@ Progress RunProgress::of(Progress now) {
   const double seconds = std::chrono::duration<double>(Clock::now() - begin_).count();
   most_ = std::max(most_, share());
   now.done = most_;
-  constexpr double kTooLittle = 0.005;  // tells nothing of the rest
+  constexpr double kTooLittle = 0.005;  // does not predict the rest
   now.left = most_ < kTooLittle ? -1 : seconds * (1 - most_) / most_;
   return now;
 }

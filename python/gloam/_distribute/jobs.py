@@ -119,7 +119,7 @@ class Failure:
 def work(
     job: Job, out: str, name: str, seed: int, threads: int, set_threads: Callable[[int], None] | None = None
 ) -> Failure | None:
-    """Does one task and moves it to OUT/NAME. Runs on a worker; what the job raises comes back as a Failure."""
+    """Does one task and moves it to OUT/NAME. Runs on a worker; exceptions of the job become a Failure."""
     target = Path(out) / name
     scratch = Path(out) / f"{PART}{name}-{uuid.uuid4().hex[:12]}"
     try:

@@ -15,7 +15,7 @@ from gloam.envs.noise import Array
 
 @dataclass(frozen=True)
 class Actuation(ABC):
-    """A part of an action. low, high: its limits, in the units of what it moves."""
+    """A part of an action. low, high: its limits, in the units of the quantity it sets."""
 
     robot: str
     low: Sequence[float] | float | None

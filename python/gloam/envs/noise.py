@@ -27,7 +27,7 @@ class Noise(ABC):
         """The error of one observation, of the shape and in the unit of `value`."""
 
     def bias(self, rng: np.random.Generator, shape: tuple[int, ...]) -> Array:
-        """The error that stays for an episode, of `shape`; 0 unless a subclass says otherwise."""
+        """The error that stays for an episode, of `shape`; 0 unless a subclass overrides it."""
         return np.zeros(shape)
 
 

@@ -13,7 +13,7 @@ class Rest {
   explicit Rest(LiveSimulation& simulation)
       : simulation_(simulation), was_paused_(simulation.paused()) {
     simulation_.pause();
-    static_cast<void>(simulation_.simulator().wait());  // its failure is told by status()
+    static_cast<void>(simulation_.simulator().wait());  // status() reports its failure
   }
   ~Rest() {
     if (!was_paused_) simulation_.resume();

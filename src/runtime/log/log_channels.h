@@ -23,7 +23,7 @@ class LogChannels {
   /// Declares a topic, once. Errors: Gloam has no such message, the queue's.
   Status add(const TopicInfo& topic);
   /// Writes a message of a topic; of one that was not declared it writes nothing. The queue's
-  /// status() tells of a failure.
+  /// status() reports a failure.
   void write(const std::string& topic, uint64_t log_time, std::span<const uint8_t> data);
 
  private:

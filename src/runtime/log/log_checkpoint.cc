@@ -1,4 +1,4 @@
-// gloam::log_checkpoint: an instant of a logged run, to go on from.
+// gloam::log_checkpoint: an instant of a logged run from which it can be resumed.
 
 #include <fmt/format.h>
 

@@ -124,7 +124,7 @@ uint64_t LogRecorder::log_time(double time, int64_t run) const {
 
 void LogRecorder::write(const std::string& topic, double time, int64_t run,
                         std::span<const uint8_t> data) {
-  channels_->write(topic, log_time(time, run), data);  // status() tells of a failure
+  channels_->write(topic, log_time(time, run), data);  // status() reports a failure
 }
 
 void LogRecorder::write_text(const char* topic, double time, int64_t run, std::string text) {

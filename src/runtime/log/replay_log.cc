@@ -102,7 +102,7 @@ class Replay {
   std::vector<std::string> notes_;
 };
 
-// The log that is read is not replaced by what is made of it.
+// A replay must not overwrite the log that it reads.
 Status check_log_is_kept(const LogReplay& replay) {
   const RunRequest& request = replay.request;
   std::error_code code;

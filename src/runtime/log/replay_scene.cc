@@ -27,7 +27,7 @@ Result<World> compile_alike(const Scene& scene, const CompiledWorld& logged) {
       "use --restep for a new run of the changed scene; a replay can change only its appearance"};
 }
 
-// Says which of the overlays and settings changes physics.
+// Names the overlay or setting that changes physics.
 Error name_the_cause(const LogReplay& replay, const CompiledWorld& logged, Error error) {
   const auto blame = [&](const Result<Scene>& alone, const std::string& name) {
     if (!alone.ok()) return false;

@@ -98,7 +98,7 @@ class Verifier {
     return tell();
   }
 
-  // In short stretches: whoever waits may stop it at any time.
+  // In short stretches, so that the caller may cancel at any time.
   Status step_to(int64_t step) {
     constexpr int64_t kStretch = 16;
     while (at_ < step) {

@@ -130,7 +130,7 @@ Status ExposureMeter::meter(const Snapshot& snapshot) {
   const std::lock_guard lock(mutex_);
   const int64_t instant = instant_of(snapshot.step());
   if (!values_.empty() && instant <= values_.rbegin()->first)
-    values_.clear();  // the simulation began anew
+    values_.clear();  // the simulation was reset
   values_[instant] = newest_ = automatic_.ev100();
   if (values_.size() > kRemembered) values_.erase(values_.begin());
   changed_.notify_all();

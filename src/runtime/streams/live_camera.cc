@@ -67,7 +67,7 @@ Result<std::unique_ptr<LiveCamera>> LiveCamera::open(const StreamContext& contex
   return camera;
 }
 
-// Makes what takes pictures of a World: at first, and when a Snapshot of another one comes.
+// Creates the camera of a World: at first, and when a Snapshot of another World arrives.
 Status LiveCamera::follow(const std::shared_ptr<const CompiledWorld>& world) {
   GLOAM_TRY(auto shared, renderers_.of(world));
   GLOAM_TRY(auto sensor, CameraSensor::create(shared->description, request_, seed_));

@@ -23,7 +23,7 @@ Result<LidarDescription> find_lidar(const CompiledWorld& world, const std::strin
 }
 
 int motion_stretches(Rational rate, Rational timestep, int wanted) {
-  // Steps of a scan: an integer, or cut as told.
+  // Steps of a scan: an integer, or divided as requested.
   const __int128 num = static_cast<__int128>(rate.den) * timestep.den;
   const __int128 den = static_cast<__int128>(rate.num) * timestep.num;
   if (num < den) return 1;
@@ -70,7 +70,7 @@ Result<std::unique_ptr<LiveLidar>> LiveLidar::open(const StreamContext& context,
   return live;
 }
 
-// Makes what scans a World: at first, and when a Snapshot of another one comes.
+// Creates the LiDAR of a World: at first, and when a Snapshot of another World arrives.
 Status LiveLidar::follow(const std::shared_ptr<const CompiledWorld>& world) {
   GLOAM_TRY(const LidarDescription lidar, find_lidar(*world, request_.lidar));
   GLOAM_TRY(auto shared, renderers_.of(world));

@@ -1,5 +1,5 @@
 #pragma once
-// Snapshots of a running simulation for whoever asks.
+// Snapshots of a running simulation for any number of clients.
 
 #include <memory>
 

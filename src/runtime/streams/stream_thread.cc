@@ -50,7 +50,7 @@ Status StreamThread::take_timed(const SnapshotWindow& window) {
   const auto begin = Clock::now();
   const Status status = job_.take(window);
   const double seconds = std::chrono::duration<double>(Clock::now() - begin).count();
-  // A sensor that was made anew for another World counts from zero.
+  // A sensor that was created again for another World counts from zero.
   const double waited_now = waited();
   job_.account->add_time(seconds,
                          waited_now >= waited_before ? waited_now - waited_before : waited_now);
@@ -59,7 +59,7 @@ Status StreamThread::take_timed(const SnapshotWindow& window) {
 }
 
 void StreamThread::end(Error why) {
-  // Whoever has asked to be told is told; a required stream's owner reads its status.
+  // Calls the callback if there is one; the owner of a required stream reads its status.
   if (job_.on_end) {
     job_.on_end(why);
   } else if (!queue_->options().required) {

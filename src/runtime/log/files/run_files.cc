@@ -29,7 +29,7 @@ class FileList {
     if (!is_model_file(named)) return;
     const auto model = load_model_file(scene_, absolute_path(named, scene_.file.parent_path()),
                                        named.filename().string(), {});
-    if (!model.ok()) return;  // whoever draws it reports it
+    if (!model.ok()) return;  // the renderer reports it
     for (const std::string& part : model->parts) add(named.parent_path() / part);
   }
 
