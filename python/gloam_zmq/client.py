@@ -24,7 +24,7 @@ class Client:
         $GLOAM_TOKEN. server_key: CURVE public key of a server that has one, 40 characters. timeout: longest wait for an answer [s]."""
         known = [server for server in servers() if address in (None, server["address"])]
         if address is None and not known:
-            raise ConnectionError("no server of yours runs on this machine: gloam run SCENE --zmq, or give an address")
+            raise ConnectionError("no server of this user is running on this machine: start gloam run SCENE --zmq, or give an address")
         server = known[0] if known else {}
         self.address = address or server["address"]
         self.timeout = timeout
@@ -96,7 +96,7 @@ class Client:
                     return reply  # the request could not be read
             elif self._monitor in ready:
                 recv_monitor_message(self._monitor)
-                raise ConnectionError(f"the server at {self.address} has gone")
+                raise ConnectionError(f"the server at {self.address} is no longer running")
             elif time.monotonic() >= end:
                 raise TimeoutError(f"no answer from {self.address} within {timeout} s")
 

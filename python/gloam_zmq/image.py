@@ -10,7 +10,7 @@ class _Reader:
 
     def __init__(self, data):
         if bytes(data[:2]) != b"\x00\x01":
-            raise ValueError("the message is no little-endian CDR")
+            raise ValueError("the message is not little-endian CDR")
         self.data, self.at = data, 4
 
     def number(self, letter, size):
@@ -38,10 +38,10 @@ def image_array(data):
     reader.number("B", 1)
     row, size = reader.number("I", 4), reader.number("I", 4)
     if encoding not in _DTYPES:
-        raise ValueError(f"no array is made of pictures in '{encoding}'")
+        raise ValueError(f"images in '{encoding}' cannot be converted to an array")
     dtype, channels = _DTYPES[encoding]
     kind = numpy.dtype(dtype)
     if size < row * height or row != width * channels * kind.itemsize:
-        raise ValueError("the picture has padded rows or is cut off")
+        raise ValueError("the image has padded rows or is truncated")
     flat = numpy.frombuffer(data, dtype=kind, count=width * height * channels, offset=reader.at)
     return flat.reshape((height, width) if channels == 1 else (height, width, channels)), encoding

@@ -19,7 +19,7 @@ class SharedRing:
             os.close(descriptor)
         magic, version, self.slots, self.slot_bytes = _HEAD.unpack_from(self._map, 0)
         if magic != b"GLOAMSHM" or version != 1 or _PAGE + self.slots * self.slot_bytes > len(self._map):
-            raise OSError(f"{name} is no ring of Gloam's, or of another version")
+            raise OSError(f"{name} is not a Gloam ring of this version")
 
     def sequence(self, slot):
         """Number of a slot's message; odd while it is written."""

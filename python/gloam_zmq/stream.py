@@ -42,7 +42,7 @@ class Message:
     def image(self):
         """The picture as an array, (height, width) or (height, width, channels); a view, not a copy."""
         if self.type != IMAGE:
-            raise TypeError(f"{self.topic} is no picture but {self.type}")
+            raise TypeError(f"{self.topic} is not an image topic: its type is {self.type}")
         return image_array(self.data)[0]
 
 
