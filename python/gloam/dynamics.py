@@ -63,7 +63,7 @@ class Dynamics:
         for actuator, gain, bias in zip(self._actuators, gains, biases, strict=True):
             if gain > _AFFINE or bias > _AFFINE:
                 name = self._sim.world.actuators[actuator]
-                raise UsageError(f"gains: actuator '{name}' is a muscle or has a user-defined law, which cannot be scaled",
+                raise UsageError(f"gains: actuator '{name}' is a muscle or has a law of its own, which cannot be scaled",
                                  hint='set its parameters with set_live_field("actuator_gain", …)')
 
 

@@ -5,8 +5,8 @@ from typing import Any, NoReturn
 
 
 def _refuse(*_: Any, **__: Any) -> NoReturn:
-    raise TypeError('the value of an option is a copy that cannot be changed: assign the whole value, as in scene["camera.front.position"] = [2, 0, 1], '
-                    "or change list(value)")
+    raise TypeError('the value of an option is a copy that cannot be changed: assign the whole value, as in '
+                    'scene["camera.front.position"] = [2, 0, 1], or change list(value)')
 
 
 class OptionList(list[Any]):

@@ -95,8 +95,8 @@ class Env(gym.Env[Observation, Array]):
     def __reduce__(self) -> Any:
         """A pickled or copied environment is made again from its spec, and has to be reset."""
         if self.spec is None:
-            raise TypeError("an environment without a spec cannot be pickled or copied: register it and create it with gym.make(), whose env.spec creates "
-                            "another one, or send the function that creates it")
+            raise TypeError("an environment without a spec cannot be pickled or copied: register it and create it with gym.make(), whose "
+                            "env.spec creates another one, or send the function that creates it")
         return made_by_spec, (self.spec,)
 
     def __deepcopy__(self, _: dict[int, Any]) -> Any:

@@ -59,7 +59,8 @@ class VectorEnv(gym.vector.VectorEnv[Observation, Array, Array]):
         self._last: Any = create_empty_array(self.single_observation_space, num_envs)
 
     def __reduce__(self) -> Any:
-        raise TypeError("a vector environment cannot be pickled or copied: create another with gym.make_vec(env.spec), or send the function that creates it")
+        raise TypeError("a vector environment cannot be pickled or copied: create another with gym.make_vec(env.spec), "
+                        "or send the function that creates it")
 
     @property
     def sims(self) -> list[gloam.Simulation]:
