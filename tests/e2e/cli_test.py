@@ -111,7 +111,7 @@ class Check(ProgramTest):
         model = self.write("m.xml", PENDULUM)
         scene = self.write("s.toml", '[[robot]]\nname = "a"\nfile = "m.xml"\n')
         text = self.gloam("check", model, scene).stdout.splitlines()
-        self.assertRegex(text[0], r"m.xml: 2 bodies, 1 joints, 2 geoms: equal to stock MuJoCo's; equal to its export \(\d+ fields, export \d+\.\d+ MB, ")
+        self.assertRegex(text[0], r"m.xml: 2 bodies, 1 joints, 2 geoms: equal to stock MuJoCo's model; equal to its export \(\d+ fields, export \d+\.\d+ MB, ")
         self.assertRegex(text[1], r"s.toml: 2 bodies, 1 joints, 3 geoms: equal to its export \(")
         self.assertEqual(text[2], "2 of 2 passed")
         data = json.loads(self.gloam("check", "--json", model).stdout)
@@ -186,7 +186,7 @@ class Mistakes(ProgramTest):
             with open("/dev/full", "w") as full:
                 done = subprocess.run([PROGRAM, *arguments], stdout=full, stderr=subprocess.PIPE, text=True)
             self.assertEqual((done.returncode, done.stderr.count("\n")), (1, 1), arguments)
-            self.assertIn("gloam: error: standard output", done.stderr)
+            self.assertIn("gloam: error: cannot write to standard output", done.stderr)
         for command in ("completion fish", f"info {model}"):
             quiet = subprocess.run(["bash", "-c", f"set -o pipefail; {PROGRAM} {command} | true"], capture_output=True, text=True)
             self.assertEqual((quiet.returncode, quiet.stderr), (0, ""), f"{command}: a reader that has seen enough")
