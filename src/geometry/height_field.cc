@@ -219,11 +219,12 @@ Result<HeightGrid> make_height_grid(const std::array<double, 2>& low,
     grid.step[k] = extent / (count[k] - 1);
   }
   if (!(count[0] * count[1] * layers <= static_cast<double>(kMostHeightSamples))) {
-    return Error{ErrorKind::kInput,
-                 fmt::format("{:.0f} x {:.0f} samples in {} layer{} are more than {}", count[0],
-                             count[1], layers, layers == 1 ? "" : "s", kMostHeightSamples),
-                 {},
-                 "give a coarser 'resolution' or a smaller region"};
+    return Error{
+        ErrorKind::kInput,
+        fmt::format("{:.0f} x {:.0f} samples in {} layer{} exceed the limit of {}", count[0],
+                    count[1], layers, layers == 1 ? "" : "s", kMostHeightSamples),
+        {},
+        "use a coarser 'resolution' or a smaller region"};
   }
   grid.low = low;
   grid.columns = static_cast<int>(count[0]);
@@ -258,11 +259,11 @@ Result<Floors> sample_floors(std::span<const PlacedMesh> meshes, const HeightGri
                              uint64_t seed) {
   const GridTriangles triangles(meshes, grid);
   if (triangles.count() > std::numeric_limits<uint32_t>::max())
-    return Error{ErrorKind::kInput, "more than 4 billion triangles are not sampled"};
+    return Error{ErrorKind::kInput, "meshes with more than 4 billion triangles cannot be sampled"};
   const std::vector<std::vector<uint32_t>> lists = sort_into_bands(triangles, grid);
   if (lists.empty()) {
     return Error{ErrorKind::kInput,
-                 fmt::format("more than {:.0f} surfaces lie over one another", kMostDrawn)};
+                 fmt::format("more than {:.0f} surfaces lie above one another", kMostDrawn)};
   }
   Floors floors{grid, layers, {}};
   floors.z.assign(grid.size() * static_cast<size_t>(layers), kNoHeight);
@@ -301,9 +302,9 @@ Result<Floors> sample_floors(std::span<const PlacedMesh> meshes, const HeightGri
   });
   if (is_too_deep) {
     return Error{ErrorKind::kInput,
-                 fmt::format("more than {} surfaces lie over one another", kMostSurfaces),
+                 fmt::format("more than {} surfaces lie above one another", kMostSurfaces),
                  {},
-                 "give layers = 1, or a mesh without what is inside of things"};
+                 "use layers = 1, or a mesh without interior surfaces"};
   }
   return floors;
 }

@@ -75,9 +75,9 @@ class Slabs {
         if (slabs.size() == kMostSlabs) {
           return Error{
               ErrorKind::kInput,
-              fmt::format("the floors above the ground fall into more than {} pieces", kMostSlabs),
+              fmt::format("the floors above the ground consist of more than {} pieces", kMostSlabs),
               {},
-              "give a coarser 'resolution', fewer 'layers' or a smaller region"};
+              "use a coarser 'resolution', fewer 'layers' or a smaller region"};
         }
         slabs.push_back(grow(node));
       }
@@ -220,7 +220,7 @@ Result<HeightField> ground_of(const Floors& floors) {
     field.z.push_back(floors.at(std::max(layer, 0), i));
     is_any |= layer >= 0;
   }
-  if (!is_any) return Error{ErrorKind::kInput, "no sample of the region has a surface under it"};
+  if (!is_any) return Error{ErrorKind::kInput, "no sample of the region has a surface below it"};
   field.filled = fill(field.grid, &field.z);
   return field;
 }

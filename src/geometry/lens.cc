@@ -72,10 +72,10 @@ std::optional<PixelRay> pixel_ray(const Intrinsics& intrinsics, double u, double
 std::string lens_fault(const Intrinsics& k) {
   const auto finite = [](double x) { return std::isfinite(x); };
   if (!(k.fx > 0 && k.fy > 0) || !finite(k.fx) || !finite(k.fy))
-    return fmt::format("its focal lengths, {} and {} px, are not both positive", k.fx, k.fy);
+    return fmt::format("its focal lengths must be positive, got {} and {} px", k.fx, k.fy);
   if (!finite(k.cx) || !finite(k.cy) ||
       !std::all_of(k.distortion.begin(), k.distortion.end(), finite)) {
-    return "a number of its lens is not finite";
+    return "a parameter of its lens is not finite";
   }
   if (!is_folding(k.lens)) return {};
   const auto lens = make_lens<double>(k);
@@ -87,8 +87,8 @@ std::string lens_fault(const Intrinsics& k) {
         std::hypot(std::max(k.cx, k.width - k.cx) / k.fx, std::max(k.cy, k.height - k.cy) / k.fy);
     if (radius >= corner) return {};
     return fmt::format(
-        "its distortion folds within the picture: from {:.1f} degrees off the axis, "
-        "{:.0f} px from the centre, the picture shrinks with the angle",
+        "its distortion folds within the image: beyond {:.1f} degrees off the axis, {:.0f} px from "
+        "the centre, the image radius decreases with the angle",
         lens.reach / kDegree, radius * k.fx);
   }
   // Whatever is seen inside is seen if the border is: walk around it.
@@ -103,8 +103,8 @@ std::string lens_fault(const Intrinsics& k) {
       double X, Y, Z, angle;
       if (lens_unproject(lens, (u - k.cx) / k.fx, (v - k.cy) / k.fy, &X, &Y, &Z, &angle)) continue;
       return fmt::format(
-          "its distortion folds within the picture: nothing is seen at pixel "
-          "({:.0f}, {:.0f}); the model holds up to {:.1f} degrees off the axis",
+          "its distortion folds within the image: pixel ({:.0f}, {:.0f}) has no ray; the model is "
+          "valid up to {:.1f} degrees off the axis",
           u, v, std::atan(lens.reach) / kDegree);
     }
   }

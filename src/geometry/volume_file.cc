@@ -35,7 +35,7 @@ class HeadReader {
     return {ErrorKind::kInput,
             fmt::format("'{}' {}", name_, what),
             {},
-            "numpy.save() of an array of float32 with the shape (nz, ny, nx) makes one"};
+            "create it with numpy.save() from a float32 array of shape (nz, ny, nx)"};
   }
   /// The text behind 'key': in the dictionary; empty when it is not there.
   static std::string_view value_of(std::string_view text, std::string_view key) {
@@ -74,11 +74,11 @@ Result<Head> HeadReader::read() {
   if (bytes_.size() < 12 || std::memcmp(bytes_.data(), kMagic.data(), kMagic.size()) != 0)
     return bad("is not an .npy file");
   const uint8_t version = bytes_[6];
-  if (version < 1 || version > 3) return bad(fmt::format("has the unknown version {}", version));
+  if (version < 1 || version > 3) return bad(fmt::format("has an unknown version {}", version));
   const size_t first = version == 1 ? 10 : 12;
   uint64_t length = bytes_[8] | uint64_t{bytes_[9]} << 8;
   if (version > 1) length |= uint64_t{bytes_[10]} << 16 | uint64_t{bytes_[11]} << 24;
-  if (length > kLongestHead || first + length > bytes_.size()) return bad("has a damaged head");
+  if (length > kLongestHead || first + length > bytes_.size()) return bad("has a damaged header");
   const std::string_view text(reinterpret_cast<const char*>(bytes_.data()) + first, length);
 
   Head head;
@@ -86,7 +86,7 @@ Result<Head> HeadReader::read() {
   const std::string_view type = value_of(text, "descr");
   if (type.size() < 5 || type.substr(1, 3) == ">f4" || type.substr(1, 3) == ">f8" ||
       (type.substr(1, 3) != "<f4" && type.substr(1, 3) != "<f8")) {
-    return bad("does not hold little-endian float32 or float64");
+    return bad("does not contain little-endian float32 or float64");
   }
   head.is_double = type[3] == '8';
   if (!value_of(text, "fortran_order").starts_with("False"))
@@ -114,7 +114,7 @@ Result<uint64_t> count_voxels(const Head& head, uint64_t size, const std::string
   const uint64_t expected = head.size + count * (head.is_double ? 8 : 4);
   if (size != expected) {
     return Error{ErrorKind::kInput,
-                 fmt::format("'{}' has {} bytes; its shape needs {}", name, size, expected)};
+                 fmt::format("'{}' has {} bytes, but its shape requires {}", name, size, expected)};
   }
   return count;
 }
@@ -143,9 +143,10 @@ Result<VolumeFile> decode_npy(std::span<const uint8_t> bytes, const std::string&
     }
     out.values[i] = static_cast<float>(value);
     if (!(value >= 0 && std::isfinite(out.values[i]))) {
-      return Error{ErrorKind::kInput,
-                   fmt::format("'{}' holds {} at voxel {}; values must be finite and not negative",
-                               name, value, i)};
+      return Error{
+          ErrorKind::kInput,
+          fmt::format("'{}' contains {} at voxel {}; values must be finite and not negative", name,
+                      value, i)};
     }
   }
   return out;

@@ -47,7 +47,7 @@ class StagedRenderer final : public Renderer {
   }
 
   RenderStats render(const CameraView& view, const RenderSettings& settings, Film* film) override {
-    GLOAM_CHECK(updated_, "update must come before render");
+    GLOAM_CHECK(updated_, "update() must be called before render()");
     const auto start = std::chrono::steady_clock::now();
     resize_film(view, settings, film);
     film->cover.clear();
@@ -87,7 +87,7 @@ class StagedRenderer final : public Renderer {
   }
 
   float illuminance(Vec3f p_W, Vec3f n_W) override {
-    GLOAM_CHECK(updated_, "update must come before illuminance");
+    GLOAM_CHECK(updated_, "update() must be called before illuminance()");
     constexpr int kDepth = 5;
     Affine3f X_WC;
     X_WC.p = p_W;
@@ -96,7 +96,7 @@ class StagedRenderer final : public Renderer {
 
   void distant_light(const CameraView& view, std::span<const Vec3f> directions,
                      std::span<float> passed) override {
-    GLOAM_CHECK(updated_, "update must come before distant_light");
+    GLOAM_CHECK(updated_, "update() must be called before distant_light()");
     std::vector<CameraKey> keys;
     const CameraView32 camera = make_camera(view, &keys);
     const SceneView seen = scene().view_from(view.X_WC_open);
@@ -107,7 +107,7 @@ class StagedRenderer final : public Renderer {
   }
 
   void scan(const LidarView& view, std::span<LidarReturn> returns) override {
-    GLOAM_CHECK(updated_, "update must come before scan");
+    GLOAM_CHECK(updated_, "update() must be called before scan()");
     SceneView seen = scene().view_from(view.motions.front().X_WL);
     CpuTracer tracer = traced_.tracer();
     RenderSlices slices(view.turns, [&, keys = keys_, previous = previous_] {
@@ -198,9 +198,10 @@ class StagedRenderer final : public Renderer {
     job.centered = settings.tier == RenderTier::kDirect && settings.spp == 1 &&
                    settings.first_sample == 0 && !job.has_motion &&
                    !(job.camera.aperture.radius > 0);
-    GLOAM_CHECK(!adaptive || (settings.tier == RenderTier::kPath && settings.first_sample == 0 &&
-                              settings.spp >= kLeastAdaptiveSpp),
-                "adaptive sampling is of the path tier, from sample 0, of 16 and more");
+    GLOAM_CHECK(
+        !adaptive || (settings.tier == RenderTier::kPath && settings.first_sample == 0 &&
+                      settings.spp >= kLeastAdaptiveSpp),
+        "adaptive sampling requires the path tier, a first sample of 0 and at least 16 samples");
     const int64_t samples =
         adaptive ? settings.spp / 2 : int64_t{settings.first_sample} + settings.spp;
     while ((int64_t{1} << job.log2_samples) < samples) ++job.log2_samples;
@@ -213,7 +214,7 @@ class StagedRenderer final : public Renderer {
         !(job.camera.aperture.radius > 0) && !(moves && job.camera.shutter.length > 0);
     if (total.finished && settings.spp > 0 && settings.spp < settings.guide_samples && sharp) {
       GLOAM_CHECK(settings.exact_channels && settings.exact_details,
-                  "guide samples need the exact channels");
+                  "guide samples require the exact channels");
       total.rays += refine_guides({job.scene, job.tracer, job.camera, job.has_motion},
                                   settings.guide_samples, job.slices, job.film);
     }

@@ -66,7 +66,7 @@ void RenderTurns::take(RenderUse& use) {
 
 void RenderTurns::give() {
   const std::lock_guard lock(mutex_);
-  GLOAM_CHECK(holder_ != nullptr, "a turn is given back once");
+  GLOAM_CHECK(holder_ != nullptr, "a turn must be released exactly once");
   settle();
   grant_next();
 }

@@ -37,7 +37,8 @@ Result<SensorTiming> SensorTiming::make(Rational rate, const TimingOptions& opti
     return Error{ErrorKind::kInput,
                  fmt::format("a {} of {} s at {:g} Hz would change the order of samples", what,
                              jitter, rate.value()),
-                 options.loc, fmt::format("at most {:.3g} s", std::max(0.0, room / (2 * kCut)))};
+                 options.loc,
+                 fmt::format("use at most {:.3g} s", std::max(0.0, room / (2 * kCut)))};
   };
   if (options.jitter > 0)
     GLOAM_TRY_STATUS(check("jitter", options.jitter, period - timing.timestep_));

@@ -171,7 +171,7 @@ void set_child(const BvhBox& b, int side, BvhNode* node) {
 
 BvhTree build_bvh(const std::vector<BvhBox>& boxes, const BvhBuild& options) {
   GLOAM_CHECK(options.most_in_leaf >= 1 && options.most_in_leaf <= bvh::kMostTriangles,
-              "leaves of a BVH hold one to eight");
+              "a BVH leaf must hold one to eight triangles");
   std::vector<Item> items;
   items.reserve(boxes.size());
   for (uint32_t i = 0; i < boxes.size(); ++i) {
@@ -182,7 +182,7 @@ BvhTree build_bvh(const std::vector<BvhBox>& boxes, const BvhBuild& options) {
   const auto count = static_cast<uint32_t>(items.size());
   GLOAM_CHECK(
       items.size() < (1u << 27) && depth_of_halves(count, options.most_in_leaf) < options.depth,
-      "a BVH holds up to 134 million triangles, and two million instances");
+      "a BVH can hold at most 134 million triangles and two million instances");
   Builder builder(boxes, &items, options);
 
   // The upper part of the tree one node after the other; what hangs below it side by side.

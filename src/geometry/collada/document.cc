@@ -42,7 +42,7 @@ Result<std::unique_ptr<ColladaDocument>> ColladaDocument::open(const ModelSource
     return Error{ErrorKind::kInput,
                  std::move(message),
                  {source.name, line_at(text, static_cast<size_t>(offset)), 0},
-                 "the file may be cut off: export the model again"};
+                 "the file may be truncated; export the model again"};
   };
   if (const auto excess = xml_excess(as_text(source.bytes)))
     return refuse(excess->what, static_cast<ptrdiff_t>(excess->at));
@@ -51,10 +51,10 @@ Result<std::unique_ptr<ColladaDocument>> ColladaDocument::open(const ModelSource
       source.bytes.data(), source.bytes.size(), pugi::parse_default, pugi::encoding_utf8);
   if (!parsed)
     return refuse(fmt::format("is not well-formed XML: {}", parsed.description()), parsed.offset);
-  if (!out->root()) return refuse("is no COLLADA file: its top element is not <COLLADA>", 0);
+  if (!out->root()) return refuse("is not a COLLADA file: its root element is not <COLLADA>", 0);
   size_t count = 0;
   for (pugi::xml_node node = out->root(); node;) {
-    if (++count > kMostElements) return refuse("has more elements than the limit", 0);
+    if (++count > kMostElements) return refuse("has too many elements", 0);
     if (const char* id = node.attribute("id").value(); *id != 0) out->ids_.emplace(id, node);
     if (node.first_child()) {
       node = node.first_child();
@@ -87,12 +87,12 @@ Error ColladaDocument::bad(const pugi::xml_node& node, std::string_view message)
 Status ColladaDocument::read_floats(const pugi::xml_node& node, std::vector<float>* out) {
   std::string_view text = node.text().get();
   if (!budget_.take(text.size() / 2 + 1, sizeof(float)))
-    return bad(node, "unpacks to more than the limit");
+    return bad(node, "exceeds the size limit when decoded");
   out->clear();
   for (std::string_view word; !(word = next_word(&text)).empty();) {
     float value;
     if (!parse_float(word, &value))
-      return bad(node, fmt::format("holds '{}', which is no number", word.substr(0, 40)));
+      return bad(node, fmt::format("contains '{}', which is not a number", word.substr(0, 40)));
     out->push_back(value);
   }
   return {};
@@ -101,12 +101,13 @@ Status ColladaDocument::read_floats(const pugi::xml_node& node, std::vector<floa
 Status ColladaDocument::read_indices(const pugi::xml_node& node, std::vector<uint32_t>* out) {
   std::string_view text = node.text().get();
   if (!budget_.take(text.size() / 2 + 1, sizeof(uint32_t)))
-    return bad(node, "unpacks to more than the limit");
+    return bad(node, "exceeds the size limit when decoded");
   out->clear();
   for (std::string_view word; !(word = next_word(&text)).empty();) {
     uint32_t value = 0;
     if (!parse_integer(word, &value))
-      return bad(node, fmt::format("holds '{}', which is no index", word.substr(0, 40)));
+      return bad(node,
+                 fmt::format("contains '{}', which is not a valid index", word.substr(0, 40)));
     out->push_back(value);
   }
   return {};

@@ -44,7 +44,7 @@ class GeometryReader {
   Result<std::vector<ColladaPart>> read() {
     const pugi::xml_node mesh = geometry_.child("mesh");
     if (!mesh) {
-      add_note(model_, fmt::format("the geometry '{:.80}' is no mesh and is left out",
+      add_note(model_, fmt::format("geometry '{:.80}' is not a mesh and is ignored",
                                    geometry_.attribute("id").value()));
       return std::vector<ColladaPart>{};
     }
@@ -67,9 +67,10 @@ class GeometryReader {
       const pugi::xml_node accessor = source.child("technique_common").child("accessor");
       const pugi::xml_node array = document_->find(accessor.attribute("source").value());
       if (!source || !accessor || !array)
-        return document_->bad(input, fmt::format("names the source '{:.80}', which is not there "
-                                                 "or has no numbers",
-                                                 url));
+        return document_->bad(
+            input,
+            fmt::format("refers to source '{:.80}', which does not exist or contains no numbers",
+                        url));
       GLOAM_TRY_STATUS(document_->read_floats(array, &out.values));
       out.count = accessor.attribute("count").as_uint();
       out.stride = std::max(1U, accessor.attribute("stride").as_uint(1));
@@ -77,12 +78,13 @@ class GeometryReader {
       out.width = out.stride;
       const size_t size = out.values.size();
       if (out.count > 0 && (out.offset > size || out.count > (size - out.offset) / out.stride))
-        return document_->bad(accessor, fmt::format("asks for {} times {} numbers; there are {}",
-                                                    out.count, out.stride, size));
+        return document_->bad(
+            accessor, fmt::format("requires {} x {} numbers, but the source has {}", out.count,
+                                  out.stride, size));
     }
     if (out.width < least)
       return document_->bad(
-          input, fmt::format("has {} numbers per vertex; {} are needed", out.width, least));
+          input, fmt::format("has {} numbers per vertex, expected at least {}", out.width, least));
     return &out;
   }
 
@@ -91,7 +93,7 @@ class GeometryReader {
     for (const pugi::xml_node& input : node.children("input")) {
       const std::string_view semantic = input.attribute("semantic").value();
       const uint32_t at = offset.value_or(input.attribute("offset").as_uint());
-      if (at >= kMostOffsets) return document_->bad(input, "has too large an offset");
+      if (at >= kMostOffsets) return document_->bad(input, "has an offset that is too large");
       if (!offset) out->stride = std::max(out->stride, at + 1);
       const auto set = [&](CornerInput* to, size_t least) -> Status {
         if (to->source != nullptr) return {};
@@ -123,8 +125,8 @@ class GeometryReader {
     const auto add_polygon = [&](const pugi::xml_node& p) -> Status {
       GLOAM_TRY_STATUS(document_->read_indices(p, &numbers));
       if (numbers.size() % stride != 0)
-        return document_->bad(
-            p, fmt::format("has {} indices, no multiple of {}", numbers.size(), stride));
+        return document_->bad(p, fmt::format("has {} indices, which is not a multiple of {}",
+                                             numbers.size(), stride));
       indices->insert(indices->end(), numbers.begin(), numbers.end());
       return {};
     };
@@ -132,7 +134,7 @@ class GeometryReader {
       pugi::xml_node p = child;
       if (std::string_view(child.name()) == "ph") {
         p = child.child("p");
-        add_note(model_, "holes of polygons are filled");
+        add_note(model_, "holes in polygons are filled");
       } else if (std::string_view(child.name()) != "p") {
         continue;
       }
@@ -143,7 +145,7 @@ class GeometryReader {
       if (kind == "triangles") sizes->insert(sizes->end(), corners / 3, 3);
       if (kind == "triangles" && corners % 3 != 0)
         return document_->bad(p,
-                              fmt::format("has {} corners, no whole number of triangles", corners));
+                              fmt::format("has {} corners, which is not a multiple of 3", corners));
       if (kind == "trifans" || kind == "tristrips")
         unroll(kind == "trifans", before, stride, corners, sizes, indices);
     }
@@ -151,7 +153,7 @@ class GeometryReader {
     for (const uint32_t size : *sizes) total += size;
     if (total * stride != indices->size())
       return document_->bad(
-          node, fmt::format("is to have {} indices and has {}", total * stride, indices->size()));
+          node, fmt::format("must have {} indices, but has {}", total * stride, indices->size()));
     return {};
   }
 
@@ -182,7 +184,7 @@ class GeometryReader {
     if (indices.empty()) return {};
     const size_t corners = indices.size() / in.stride;
     if (!document_->budget().take(corners, 20 * sizeof(float)))
-      return document_->bad(node, "unpacks to more than the limit");
+      return document_->bad(node, "exceeds the size limit when decoded");
     TriangleMesh mesh;
     ColladaPart part;
     GLOAM_TRY_STATUS(gather(node, in, indices, &polygons, &mesh, &part));
@@ -190,11 +192,11 @@ class GeometryReader {
     if (const std::string why =
             triangulate_polygons(mesh.positions, polygons, &mesh.indices, &face);
         !why.empty())
-      return document_->bad(node, fmt::format(": its polygon {} {}", face, why));
+      return document_->bad(node, fmt::format("has an invalid polygon: polygon {} {}", face, why));
     const std::string what = fmt::format("geometry '{:.80}'", geometry_.attribute("id").value());
     GLOAM_TRY_STATUS(finish_mesh(&mesh, what, document_->source().name, model_));
     if (model_->meshes.size() >= document_->source().options->limits.meshes)
-      return document_->bad(node, "is one mesh too many");
+      return document_->bad(node, "exceeds the limit on meshes");
     part.mesh = static_cast<int>(model_->meshes.size());
     part.symbol = node.attribute("material").value();
     model_->meshes.push_back(std::move(mesh));
@@ -217,7 +219,8 @@ class GeometryReader {
         key[i] = source == nullptr ? kNoIndex : indices[at + inputs[i]->offset];
         if (source != nullptr && key[i] >= source->count)
           return document_->bad(
-              node, fmt::format("uses element {} of a source of {}", key[i], source->count));
+              node, fmt::format("refers to element {} of a source with {} elements", key[i],
+                                source->count));
       }
       const auto [vertex, is_new] =
           known.try_emplace(key, static_cast<uint32_t>(mesh->positions.size()));

@@ -38,7 +38,9 @@ class EffectReader {
     for (const char* kind : {"phong", "blinn", "lambert", "constant"})
       if (!shader) shader = technique.child(kind);
     if (!shader) {
-      add_note(model_, fmt::format("the effect of material '{:.80}' is of no common kind", name));
+      add_note(
+          model_,
+          fmt::format("the effect of material '{:.80}' has an unsupported shading model", name));
       return out;
     }
     std::vector<float> color;
@@ -158,7 +160,7 @@ class EffectReader {
     }
     const pugi::xml_node image = document_->find(name);
     if (!image) {
-      add_note(model_, fmt::format("the picture '{:.80}' is not described anywhere", name));
+      add_note(model_, fmt::format("image '{:.80}' is not defined", name));
       return {};
     }
     pugi::xml_node from = image.child("init_from");
@@ -190,18 +192,19 @@ class EffectReader {
     }
     const ModelSource& source = document_->source();
     if (source.folder == nullptr) {
-      add_note(model_, fmt::format("the picture '{:.200}' was not looked for", name));
+      add_note(model_,
+               fmt::format("image '{:.200}' was not loaded: the model has no folder", name));
       return {};
     }
     Result<std::vector<uint8_t>> bytes =
         source.folder->read(name, document_->loc_of(place), source.options->limits);
     if (!bytes.ok() && bytes.error().kind == ErrorKind::kIo) {
-      add_note(model_, fmt::format("the picture '{:.200}' is missing", name));
+      add_note(model_, fmt::format("image '{:.200}' is missing", name));
       return {};
     }
     if (!bytes.ok()) return std::move(bytes).error();
     if (!document_->budget().take(bytes->size(), 1))
-      return document_->bad(place, "is one picture too many: the limit of memory is reached");
+      return document_->bad(place, "exceeds the memory limit for images");
     *image = static_cast<int>(model_->images.size());
     model_->images.push_back({name, std::move(*bytes)});
     return {};
@@ -220,13 +223,13 @@ Result<int> ColladaMaterials::row(const std::string& url) {
   if (!is_new) return known->second;
   const pugi::xml_node material = document_->find(url);
   if (!material) {
-    add_note(model_, fmt::format("the material '{:.80}' is not described anywhere", url));
+    add_note(model_, fmt::format("material '{:.80}' is not defined", url));
     return -1;
   }
   const pugi::xml_node effect =
       document_->find(material.child("instance_effect").attribute("url").value());
   if (model_->materials.size() >= document_->source().options->limits.materials)
-    return document_->bad(material, "is one material too many");
+    return document_->bad(material, "exceeds the limit on materials");
   std::string name = material.attribute("name").value();
   if (name.empty()) name = material.attribute("id").value();
   GLOAM_TRY(ImportedMaterial made, EffectReader(document_, effect, model_).read(name));

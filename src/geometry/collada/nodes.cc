@@ -41,7 +41,7 @@ class SceneReader {
     const pugi::xml_node instance = root.child("scene").child("instance_visual_scene");
     pugi::xml_node scene = document_->find(instance.attribute("url").value());
     if (!scene) scene = root.child("library_visual_scenes").child("visual_scene");
-    if (root.child("library_animations").first_child()) add_note(model_, "animations are left out");
+    if (root.child("library_animations").first_child()) add_note(model_, "animations are ignored");
     if (scene) return visit_children(scene, X_FD, 0);
     // Without a scene, all geometry as it lies.
     for (const pugi::xml_node& library : root.children("library_geometries"))
@@ -57,7 +57,7 @@ class SceneReader {
     if (const pugi::xml_attribute unit = asset.child("unit").attribute("meter")) {
       const float value = unit.as_float();
       if (!(value > 0 && std::isfinite(value)))
-        return document_->bad(asset.child("unit"), "has no length above zero in 'meter'");
+        return document_->bad(asset.child("unit"), "must have a positive 'meter'");
       meter[0] = value;
     }
     const float m = meter[0];
@@ -68,7 +68,7 @@ class SceneReader {
     // X_UP: right is -y, up x, in is z; so (x, y, z) -> (-y, -z, x).
     if (up == "X_UP") return Affine3f{{0, 0, m}, {-m, 0, 0}, {0, -m, 0}, {}};
     if (!up.empty() && up != "Y_UP")
-      return document_->bad(asset.child("up_axis"), "is none of X_UP, Y_UP, Z_UP");
+      return document_->bad(asset.child("up_axis"), "must be one of X_UP, Y_UP, Z_UP");
     model_->was_y_up = true;  // the specification's default
     return Affine3f{{m, 0, 0}, {0, 0, m}, {0, -m, 0}, {}};
   }
@@ -87,11 +87,11 @@ class SceneReader {
       if (needed == 0) continue;
       GLOAM_TRY_STATUS(document_->read_floats(child, &n));
       if (n.size() != needed)
-        return document_->bad(child, fmt::format("has {} numbers, not {}", n.size(), needed));
+        return document_->bad(child, fmt::format("has {} numbers, expected {}", n.size(), needed));
       Affine3f own;
       if (kind == "matrix") {
         if (n[12] != 0 || n[13] != 0 || n[14] != 0 || n[15] != 1)
-          return document_->bad(child, "is no affine map: its last row must be 0 0 0 1");
+          return document_->bad(child, "is not an affine transform: its last row must be 0 0 0 1");
         own = {{n[0], n[4], n[8]}, {n[1], n[5], n[9]}, {n[2], n[6], n[10]}, {n[3], n[7], n[11]}};
       } else if (kind == "rotate") {
         own = rotation_about({n[0], n[1], n[2]}, n[3]);
@@ -100,10 +100,11 @@ class SceneReader {
       } else if (kind == "scale") {
         own = {{n[0], 0, 0}, {0, n[1], 0}, {0, 0, n[2]}, {}};
       } else {
-        add_note(model_, fmt::format("<{}> of nodes is left out", kind));
+        add_note(model_, fmt::format("<{}> in nodes is ignored", kind));
       }
       *X = *X * own;
-      if (!is_finite_place(*X)) return document_->bad(child, "puts the node at no finite place");
+      if (!is_finite_place(*X))
+        return document_->bad(child, "gives the node a transform that is not finite");
     }
     return {};
   }
@@ -116,8 +117,8 @@ class SceneReader {
 
   Status visit(const pugi::xml_node& node, const Affine3f& X_FP, int depth) {
     if (depth > kDeepestNode)
-      return document_->bad(node, "is its own ancestor, or nested more than 128 deep");
-    if (++visits_ > kMostVisits) return document_->bad(node, "is one node too many");
+      return document_->bad(node, "is its own ancestor or is nested more than 128 levels deep");
+    if (++visits_ > kMostVisits) return document_->bad(node, "exceeds the limit on nodes");
     Affine3f X_FN = X_FP;
     GLOAM_TRY_STATUS(read_transforms(node, &X_FN));
     std::string name = node.attribute("name").value();
@@ -125,9 +126,9 @@ class SceneReader {
     for (const pugi::xml_node& instance : node.children("instance_geometry")) {
       const pugi::xml_node geometry = document_->find(instance.attribute("url").value());
       if (!geometry)
-        return document_->bad(instance, fmt::format("names the geometry '{:.80}', which is not "
-                                                    "in the file",
-                                                    instance.attribute("url").value()));
+        return document_->bad(instance,
+                              fmt::format("refers to geometry '{:.80}', which is not in the file",
+                                          instance.attribute("url").value()));
       GLOAM_TRY_STATUS(add_geometry(geometry, instance, name, X_FN));
     }
     for (const pugi::xml_node& instance : node.children("instance_controller"))
@@ -135,14 +136,14 @@ class SceneReader {
     for (const pugi::xml_node& instance : node.children("instance_node")) {
       const pugi::xml_node other = document_->find(instance.attribute("url").value());
       if (!other) {
-        add_note(model_, fmt::format("the node '{:.80}' is not in the file",
+        add_note(model_, fmt::format("node '{:.80}' is not in the file",
                                      instance.attribute("url").value()));
         continue;
       }
       GLOAM_TRY_STATUS(visit(other, X_FN, depth + 1));
     }
-    if (node.child("instance_camera")) add_note(model_, "cameras are left out");
-    if (node.child("instance_light")) add_note(model_, "lights of COLLADA files are left out");
+    if (node.child("instance_camera")) add_note(model_, "cameras are ignored");
+    if (node.child("instance_light")) add_note(model_, "lights of COLLADA files are ignored");
     return visit_children(node, X_FN, depth + 1);
   }
 
@@ -151,7 +152,7 @@ class SceneReader {
                         const Affine3f& X_FN) {
     const pugi::xml_node skin = document_->find(instance.attribute("url").value()).child("skin");
     const pugi::xml_node geometry = document_->find(skin.attribute("source").value());
-    add_note(model_, "skins are left out: the mesh is not bent");
+    add_note(model_, "skins are ignored: the mesh is not deformed");
     if (!geometry) return {};
     return add_geometry(geometry, instance, name, X_FN);
   }
@@ -179,7 +180,7 @@ class SceneReader {
       if (!part.colors.empty())
         material = paint_vertices(part.colors, material, &mesh, &painted_, model_);
       if (model_->instances.size() >= document_->source().options->limits.instances)
-        return document_->bad(geometry, "is placed too often: there are too many instances");
+        return document_->bad(geometry, "exceeds the limit on instances");
       model_->instances.push_back({name.substr(0, kMaxName), mesh, material, X_FN});
     }
     return {};
@@ -203,7 +204,7 @@ Result<ModelFile> read_collada(const ModelSource& source) {
   GLOAM_TRY(const std::unique_ptr<ColladaDocument> document, ColladaDocument::open(source));
   ModelFile model;
   GLOAM_TRY_STATUS(read_collada_scene(document.get(), &model));
-  if (model.instances.empty()) add_note(&model, "there is no geometry in the file");
+  if (model.instances.empty()) add_note(&model, "the file contains no geometry");
   return model;
 }
 

@@ -83,12 +83,12 @@ Result<TriangleMesh> welded(const TriangleMesh& mesh) {
     for (const Vec3f p : {a, b, c}) {
       const double far = max_component(Vec3f{std::abs(p.x), std::abs(p.y), std::abs(p.z)});
       if (std::isnan(p.x) || std::isnan(p.y) || std::isnan(p.z))
-        return Error{ErrorKind::kInput, "has a vertex that is no number"};
+        return Error{ErrorKind::kInput, "has a vertex that is not a number"};
       if (far > kFarthest)
         return Error{ErrorKind::kInput,
-                     fmt::format("has a vertex {:.2g} m away from its origin", far),
+                     fmt::format("has a vertex {:.2g} m from its origin", far),
                      {},
-                     "say in 'unit' how many metres one unit of the file is"};
+                     "set 'unit' to the length of one unit of the file in metres"};
     }
     if (a == b || b == c || c == a) continue;
     corners.insert(corners.end(), {a, b, c});
@@ -152,7 +152,7 @@ class Converter {
  private:
   Status go_on() const {
     if (options_.is_cancelled == nullptr || !*options_.is_cancelled) return {};
-    return Error{ErrorKind::kInterrupted, "the conversion was stopped"};
+    return Error{ErrorKind::kInterrupted, "the conversion was cancelled"};
   }
 
   Status find_hull() {
@@ -165,10 +165,11 @@ class Converter {
                                        [](Vec3f p) { return std::isfinite(p.x + p.y + p.z); });
     if (is_finite) hull_ = convex_hull(plate.positions);
     if (!is_finite || hull_.indices.empty())
-      return Error{ErrorKind::kInput, "has no extent: all of it is on a line"};
+      return Error{ErrorKind::kInput, "has no extent: all vertices lie on a line"};
     out_.mesh = plate;
     box_ = box_around(hull_);
-    out_.notes.push_back(fmt::format("is flat: a plate {:.2g} m thick stands for it", thickness));
+    out_.notes.push_back(
+        fmt::format("is flat: it is represented by a plate {:.2g} m thick", thickness));
     return {};
   }
 
@@ -182,12 +183,13 @@ class Converter {
     if (out_.is_room) {
       out_.is_closed = edges.is_closed();
       out_.mass = mass_properties(hull_);
-      out_.notes.push_back(fmt::format("looks inwards{}: it is a room, whose faces collide",
-                                       out_.is_closed ? "" : " and is not closed"));
+      out_.notes.push_back(
+          fmt::format("faces inwards{}: it is treated as a room, whose faces are colliders",
+                      out_.is_closed ? "" : " and is not closed"));
       return;
     }
     if (edges.is_closed() && mass.volume < 0) {
-      out_.notes.emplace_back("looks inwards: its triangles are turned round");
+      out_.notes.emplace_back("faces inwards: its triangles are flipped");
       for (size_t i = 0; i + 2 < out_.mesh.indices.size(); i += 3)
         std::swap(out_.mesh.indices[i + 1], out_.mesh.indices[i + 2]);
       mass = mass_properties(out_.mesh);
@@ -196,15 +198,15 @@ class Converter {
     out_.mass = out_.is_closed ? mass : mass_properties(hull_);
     if (edges.open > 0)
       out_.notes.push_back(fmt::format(
-          "is open ({} edges with one triangle): volume and mass are its hull's", edges.open));
+          "is open ({} edges with one triangle): volume and mass are computed from its hull",
+          edges.open));
     if (edges.tangled > 0)
       out_.notes.push_back(
-          fmt::format("is not a manifold ({} edges where more than two triangles "
-                      "meet, or two that face differently): volume and mass are "
-                      "its hull's",
+          fmt::format("is not a manifold ({} edges where more than two triangles meet, or two of "
+                      "opposite orientation): volume and mass are computed from its hull",
                       edges.tangled));
     if (edges.is_closed() && !out_.is_closed)
-      out_.notes.emplace_back("crosses itself: volume and mass are its hull's");
+      out_.notes.emplace_back("intersects itself: volume and mass are computed from its hull");
   }
 
   Status add_colliders() {
@@ -223,7 +225,7 @@ class Converter {
     }
     if (out_.mesh.triangle_count() > kMostDecomposed)
       out_.notes.push_back(
-          fmt::format("has {} triangles: its parts are those of a coarser one of {} at most",
+          fmt::format("has {} triangles: it is simplified to at most {} before it is decomposed",
                       out_.mesh.triangle_count(), kMostDecomposed));
     GLOAM_TRY(const std::vector<TriangleMesh> parts, find_parts());
     for (const TriangleMesh& part : parts) {

@@ -82,11 +82,11 @@ std::vector<fs::path> candidates() {
 }
 
 Result<CoacdApi> load_library() {
-  const Error missing{ErrorKind::kUnsupported,
-                      "CoACD, which takes meshes apart, is not installed",
-                      {},
-                      "run ./gloam setup, or set GLOAM_COACD to its lib_coacd.so; colliders = "
-                      "\"hull\" does without"};
+  const Error missing{
+      ErrorKind::kUnsupported,
+      "CoACD, which decomposes meshes, is not installed",
+      {},
+      "run ./gloam setup, set GLOAM_COACD to its lib_coacd.so, or use colliders = \"hull\""};
 #ifdef GLOAM_SANITIZED
   return missing;  // sanitizers end a program that loads a library with its own symbols first
 #endif
@@ -163,7 +163,7 @@ bool load_hulls(const fs::path& path, std::vector<TriangleMesh>* hulls) {
   return true;
 }
 
-Error cancelled() { return {ErrorKind::kInterrupted, "the conversion was stopped"}; }
+Error cancelled() { return {ErrorKind::kInterrupted, "the conversion was cancelled"}; }
 
 void store_hulls(const fs::path& entry, const std::vector<TriangleMesh>& hulls) {
   ArchiveWriter out;
@@ -197,13 +197,13 @@ Result<std::vector<TriangleMesh>> work(const Job& job) {
   try {
     hulls = run(job.api, job.mesh, job.options);
   } catch (const std::exception& e) {
-    return Error{ErrorKind::kInput, fmt::format("CoACD gives up on the mesh: {}", e.what())};
+    return Error{ErrorKind::kInput, fmt::format("CoACD failed on the mesh: {}", e.what())};
   } catch (...) {
     hulls.clear();
   }
   if (hulls.empty())
     return Error{
-        ErrorKind::kInput, "CoACD finds no parts in the mesh", {}, "give colliders = \"hull\""};
+        ErrorKind::kInput, "CoACD found no parts in the mesh", {}, "use colliders = \"hull\""};
   store_hulls(job.entry, hulls);  // at once: a run that starts now has the same parts
   return hulls;
 }

@@ -109,16 +109,16 @@ Elements find_elements(GltfDocument* document, const JsonNode& place, uint64_t c
   if (!document->errors().ok()) return {};
   if (stride < size) {
     views.at(static_cast<size_t>(view))["byteStride"].fail(
-        fmt::format("is {}, less than an element of {} bytes", stride, size));
+        fmt::format("is {}, but an element has {} bytes", stride, size));
     return {};
   }
   const bool fits = offset <= bytes.size() && size <= bytes.size() - offset &&
                     (count - 1) <= (bytes.size() - offset - size) / stride;
   if (count > 0 && !fits) {
-    place.fail(fmt::format("{} elements {} bytes apart from byte {} do not fit into buffer view {} "
-                           "of {} bytes",
+    place.fail(fmt::format("{} elements with a stride of {} bytes from byte {} do not fit into "
+                           "buffer view {} of {} bytes",
                            count, stride, offset, view, bytes.size()),
-               "the file may be cut off: export the model again");
+               "the file may be truncated; export the model again");
     return {};
   }
   return {bytes.subspan(std::min<uint64_t>(offset, bytes.size())), stride};
@@ -139,14 +139,14 @@ bool read_head(GltfDocument* document, const JsonNode& node, size_t out_size, Ac
   head->count = node["count"].integer(0, uint64_t{1} << 53);
   head->has_view = node["bufferView"].exists();
   if (component_size(head->type) == 0)
-    node["componentType"].fail(fmt::format("{} is no component type", head->type));
-  if (head->components == 0) node["type"].fail("is none of SCALAR, VEC2, VEC3, VEC4, MAT4");
+    node["componentType"].fail(fmt::format("{} is not a component type", head->type));
+  if (head->components == 0) node["type"].fail("must be one of SCALAR, VEC2, VEC3, VEC4, MAT4");
   const uint64_t limit =
       head->has_view ? 3 * document->source().options->limits.vertices : kMaxZeroElements;
   if (head->count > limit)
     node["count"].fail(fmt::format("is {}; the limit is {}", head->count, limit));
   if (document->errors().ok() && !document->budget().take(head->count, out_size))
-    node["count"].fail("with it the model unpacks to more than the limit",
+    node["count"].fail("makes the model exceed the size limit when decoded",
                        "split the model into several files");
   return document->errors().ok();
 }
@@ -160,7 +160,7 @@ void read_sparse(GltfDocument* document, const JsonNode& node, const AccessorHea
   const uint64_t count = sparse["count"].integer(0, head.count);
   const JsonNode indices = sparse["indices"];
   const uint64_t type = indices["componentType"].integer(0, 1 << 16);
-  if (!is_index_type(type)) indices["componentType"].fail("is no type of indices");
+  if (!is_index_type(type)) indices["componentType"].fail("is not an index type");
   if (!document->errors().ok() || count == 0) return;
   const Elements at = find_elements(document, indices, count, component_size(type));
   const Elements values = find_elements(document, sparse["values"], count, head.size());
@@ -182,7 +182,7 @@ bool GltfDocument::read_floats(int accessor, size_t components, std::vector<floa
   AccessorHead head;
   if (!read_head(this, node, components * sizeof(float), &head)) return false;
   if (head.components != components) {
-    node["type"].fail(fmt::format("has {} numbers; {} are needed", head.components, components));
+    node["type"].fail(fmt::format("has {} components, expected {}", head.components, components));
     return false;
   }
   Elements elements;
@@ -213,7 +213,7 @@ bool GltfDocument::read_indices(int accessor, std::vector<uint32_t>* out) {
   AccessorHead head;
   if (!read_head(this, node, sizeof(uint32_t), &head)) return false;
   if (head.components != 1 || !is_index_type(head.type)) {
-    node.fail("indices must be unsigned whole numbers");
+    node.fail("indices must be unsigned integers");
     return false;
   }
   Elements elements;

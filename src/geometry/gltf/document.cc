@@ -49,14 +49,15 @@ void check_asset(GltfDocument* document) {
   const JsonNode version = document->root()["asset"]["version"];
   if (!version.exists()) return version.fail("is missing; this is not glTF 2.0");
   if (const std::string text = version.text(); !text.starts_with("2."))
-    version.fail(fmt::format("is '{}'; only glTF 2 is read", text.substr(0, 20)),
+    version.fail(fmt::format("is '{}'; only glTF 2 is supported", text.substr(0, 20)),
                  "export the model as glTF 2.0");
   const JsonNode required = document->root()["extensionsRequired"];
   for (size_t i = 0; i < required.size(); ++i) {
     const std::string name = required.at(i).text();
     if (!is_known(name))
       required.at(i).fail(
-          fmt::format("the file requires '{}', which Gloam does not read", name.substr(0, 100)),
+          fmt::format("the file requires the extension '{}', which is not supported",
+                      name.substr(0, 100)),
           "export the model without it");
   }
 }
@@ -68,8 +69,7 @@ void note_unknown_extensions(GltfDocument* document, ModelFile* model) {
   for (size_t i = 0; i < used.size() && document->errors().ok(); ++i) {
     const std::string name = used.at(i).text();
     if (!is_known(name))
-      add_note(model,
-               fmt::format("the extension '{}' of the file is left out", name.substr(0, 100)));
+      add_note(model, fmt::format("extension '{}' is ignored", name.substr(0, 100)));
   }
 }
 
@@ -87,7 +87,8 @@ Result<std::vector<uint8_t>> GltfDocument::fetch(const std::string& uri,
     return bytes;
   }
   if (source_.folder == nullptr)
-    return Error{ErrorKind::kInput, pointer + ": names a file, but the model has no folder", loc};
+    return Error{ErrorKind::kInput, pointer + ": refers to a file, but the model has no folder",
+                 loc};
   Result<std::vector<uint8_t>> bytes = source_.folder->read(uri, loc, source_.options->limits);
   if (bytes.ok()) return bytes;
   Error error = std::move(bytes).error();
@@ -116,15 +117,15 @@ void GltfDocument::open_buffers(std::span<const uint8_t> bin) {
       Result<std::vector<uint8_t>> fetched = fetch(buffer["uri"].text(), buffer.pointer());
       if (!fetched.ok()) return errors_.add(std::move(fetched).error());
       if (!budget_.take(fetched->size(), 1))
-        return buffer.fail("the buffers are larger than the limit");
+        return buffer.fail("the buffers exceed the size limit");
       owned_.push_back(std::move(*fetched));
       bytes = owned_.back();
     } else if (i == 0) {
       bytes = bin;
     }
     if (bytes.size() < length)
-      buffer.fail(fmt::format("is to have {} bytes and has {}", length, bytes.size()),
-                  "the file may be cut off: export the model again");
+      buffer.fail(fmt::format("must have {} bytes, but has {}", length, bytes.size()),
+                  "the file may be truncated; export the model again");
     buffers_.push_back(bytes.first(std::min<uint64_t>(length, bytes.size())));
   }
 }
@@ -137,7 +138,7 @@ std::span<const uint8_t> GltfDocument::view(int index) {
   if (!errors_.ok()) return {};
   const std::span<const uint8_t> bytes = buffers_[static_cast<size_t>(buffer)];
   if (offset > bytes.size() || length > bytes.size() - offset) {
-    view.fail(fmt::format("bytes {} to {} lie outside buffer {} of {} bytes", offset,
+    view.fail(fmt::format("bytes {} to {} are outside of buffer {} of {} bytes", offset,
                           offset + length, buffer, bytes.size()));
     return {};
   }

@@ -23,7 +23,7 @@ Result<ModelFile> read_document(const ModelSource& source, std::span<const uint8
   ModelFile model;
   model.was_y_up = true;
   const JsonErrors& errors = document->errors();
-  if (document->root()["animations"].exists()) add_note(&model, "animations are left out");
+  if (document->root()["animations"].exists()) add_note(&model, "animations are ignored");
   note_unknown_extensions(document.get(), &model);
   read_gltf_images(document.get(), &model);
   if (errors.ok()) read_gltf_materials(document.get(), &model);
@@ -46,19 +46,20 @@ Result<ModelFile> read_glb(const ModelSource& source) {
     return Error{ErrorKind::kInput,
                  "not a readable GLB file: " + message,
                  {source.name, 0, 0},
-                 "the file may be cut off: export or copy it again"};
+                 "the file may be truncated; export or copy it again"};
   };
   if (bytes.size() < 20 || u32_at(bytes, 0) != kGlbMagic) return bad("it has no header");
   if (u32_at(bytes, 4) != 2) return bad(fmt::format("its version is {}", u32_at(bytes, 4)));
   const uint64_t length = u32_at(bytes, 8);
   if (length > bytes.size())
-    return bad(fmt::format("it is to have {} bytes and has {}", length, bytes.size()));
+    return bad(fmt::format("it must have {} bytes, but has {}", length, bytes.size()));
   std::span<const uint8_t> json, bin;
   for (uint64_t at = 12; at + 8 <= length;) {
     const uint64_t size = u32_at(bytes, at);
     const uint32_t kind = u32_at(bytes, at + 4);
     if (size > length - at - 8)
-      return bad(fmt::format("the chunk at byte {} of {} bytes ends behind the file", at, size));
+      return bad(fmt::format("the chunk at byte {} of {} bytes extends beyond the end of the file",
+                             at, size));
     if (at == 12 && kind != kJsonChunk) return bad("its first chunk is not JSON");
     if (at == 12) json = bytes.subspan(at + 8, size);
     if (kind == kBinChunk && bin.empty()) bin = bytes.subspan(at + 8, size);

@@ -22,15 +22,15 @@ Result<json> parse_bounded_json(std::span<const uint8_t> text, const std::string
     return Error{ErrorKind::kInput,
                  std::move(message),
                  {file, 0, 0},
-                 "export the model again; it may be cut off or damaged"};
+                 "the file may be truncated or damaged; export the model again"};
   };
   const std::string_view characters(reinterpret_cast<const char*>(text.data()), text.size());
   if (const auto excess = json_excess(characters, kMaxJsonValues))
-    return bad(fmt::format("not readable as JSON: byte {}: {}", excess->at, excess->what));
+    return bad(fmt::format("not readable as JSON: at byte {}: {}", excess->at, excess->what));
   try {
     return json::parse(text.begin(), text.end());
   } catch (const json::parse_error& error) {
-    return bad(fmt::format("not JSON: damaged at byte {}", error.byte));
+    return bad(fmt::format("not JSON: syntax error at byte {}", error.byte));
   } catch (const json::exception&) {
     return bad("not readable as JSON: a number is too large");
   }
@@ -74,7 +74,7 @@ uint64_t JsonNode::integer(uint64_t otherwise, uint64_t high) const {
   const double x = value_->get<double>();  // 3.0 is an integer in JSON
   if (x >= 0 && x <= 9e15 && x == std::floor(x) && static_cast<uint64_t>(x) <= high)
     return static_cast<uint64_t>(x);
-  fail(fmt::format("is {}; it must be a whole number from 0 to {}", x, high));
+  fail(fmt::format("is {}; it must be an integer from 0 to {}", x, high));
   return otherwise;
 }
 
@@ -90,7 +90,7 @@ std::string JsonNode::text(std::string_view otherwise) const {
 bool JsonNode::numbers(float* out, size_t n) const {
   if (!exists() || !errors_->ok()) return false;
   if (size() != n) {
-    fail(fmt::format("must hold {} numbers", n));
+    fail(fmt::format("must contain {} numbers", n));
     return false;
   }
   for (size_t i = 0; i < n; ++i) out[i] = at(i).number(0);
@@ -108,12 +108,12 @@ int JsonNode::index(size_t count, std::string_view what) const {
   if (!exists() || !errors_->ok()) return -1;
   const uint64_t i = integer(0, uint64_t{1} << 53);
   if (errors_->ok() && i >= count)
-    fail(fmt::format("names {} {}, but there are {}", what, i, count));
+    fail(fmt::format("refers to {} {}, but there are {}", what, i, count));
   return errors_->ok() ? static_cast<int>(i) : -1;
 }
 
 int JsonNode::required_index(size_t count, std::string_view what) const {
-  if (!exists()) fail(fmt::format("is missing; it names {}", what));
+  if (!exists()) fail(fmt::format("{} index is missing", what));
   return index(count, what);
 }
 

@@ -17,7 +17,7 @@ ImportedLight read_gltf_light(const JsonNode& node) {
   } else if (type == "directional") {
     out.type = ImportedLightType::kDirectional;
   } else if (type != "point") {
-    node["type"].fail("is none of point, spot, directional");
+    node["type"].fail("must be one of point, spot, directional");
   }
   out.color = node["color"].vec3({1, 1, 1}, 0);
   out.intensity = node["intensity"].number(1, 0);

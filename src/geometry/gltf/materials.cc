@@ -29,7 +29,7 @@ TextureWrap wrap_of(const JsonNode& node) {
     case 10497:
       return TextureWrap::kRepeat;
     default:
-      node.fail("is none of 10497, 33071, 33648");
+      node.fail("must be one of 10497, 33071, 33648");
       return TextureWrap::kRepeat;
   }
 }
@@ -62,7 +62,7 @@ class MaterialReader {
     if (index < 0) return out;
     const JsonNode texture = textures.at(static_cast<size_t>(index));
     if (!texture["source"].exists()) {
-      add_note(model_, fmt::format("{}: the texture's picture is of a kind that is not read",
+      add_note(model_, fmt::format("{}: the image format of the texture is not supported",
                                    texture.pointer()));
       return out;
     }
@@ -112,7 +112,7 @@ class MaterialReader {
     if (mode == "MASK") out->alpha_mode = AlphaMode::kMask;
     if (mode == "BLEND") out->alpha_mode = AlphaMode::kBlend;
     if (mode != "OPAQUE" && mode != "MASK" && mode != "BLEND")
-      node["alphaMode"].fail("is none of OPAQUE, MASK, BLEND");
+      node["alphaMode"].fail("must be one of OPAQUE, MASK, BLEND");
     out->alpha_cutoff = node["alphaCutoff"].number(0.5f, 0);
     if (out->alpha_mode != AlphaMode::kOpaque)
       out->opacity_texture = texture(pbr["baseColorTexture"], kAlpha);
@@ -188,7 +188,7 @@ void read_gltf_images(GltfDocument* document, ModelFile* model) {
       out.bytes.assign(bytes.begin(), bytes.end());
     }
     if (!document->budget().take(out.bytes.size(), 1))
-      return image.fail("with it the model unpacks to more than the limit", "use smaller pictures");
+      return image.fail("makes the model exceed the size limit when decoded", "use smaller images");
     model->images.push_back(std::move(out));
   }
 }
@@ -196,7 +196,8 @@ void read_gltf_images(GltfDocument* document, ModelFile* model) {
 void read_gltf_materials(GltfDocument* document, ModelFile* model) {
   const JsonNode materials = document->root()["materials"];
   const uint64_t limit = document->source().options->limits.materials;
-  if (materials.size() > limit) materials.fail(fmt::format("there are more than {}", limit));
+  if (materials.size() > limit)
+    materials.fail(fmt::format("there are more than {} materials", limit));
   const MaterialReader reader(document, model);
   for (size_t i = 0; i < materials.size() && document->errors().ok(); ++i)
     model->materials.push_back(reader.read(materials.at(i)));

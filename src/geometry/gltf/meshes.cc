@@ -75,7 +75,7 @@ class PrimitiveReader {
       colors[i] = {n[0], n[1], n[2]};
       is_clear = is_clear || (width == 4 && n[3] < 1);
     }
-    if (is_clear) add_note(model_, "the transparency of vertex colours is left out");
+    if (is_clear) add_note(model_, "the transparency of vertex colours is ignored");
     const int plain = out.mesh;
     out.material = paint_vertices(colors, material, &out.mesh, &painted_, model_);
     if (out.mesh != plain) split_weights(model_->meshes[static_cast<size_t>(plain)], &out.weights);
@@ -104,7 +104,7 @@ class PrimitiveReader {
   int read(const JsonNode& node) const {
     const uint64_t mode = node["mode"].integer(kTriangles, kFan);
     if (mode < kTriangles) {
-      add_note(model_, "points and lines are left out");
+      add_note(model_, "points and lines are ignored");
       return -1;
     }
     note_what_is_left_out(node);
@@ -113,7 +113,7 @@ class PrimitiveReader {
     const JsonNode attributes = node["attributes"];
     const JsonNode position = attributes["POSITION"];
     if (!position.exists()) {
-      add_note(model_, "primitives without positions are left out");
+      add_note(model_, "primitives without positions are ignored");
       return -1;
     }
     if (!read_attribute(position, 3, &numbers)) return -1;
@@ -138,7 +138,7 @@ class PrimitiveReader {
   }
 
   void note_what_is_left_out(const JsonNode& node) const {
-    if (node["targets"].exists()) add_note(model_, "morph targets are left out");
+    if (node["targets"].exists()) add_note(model_, "morph targets are ignored");
   }
 
   bool read_attribute(const JsonNode& node, size_t components, std::vector<float>* out) const {
@@ -150,7 +150,7 @@ class PrimitiveReader {
                      std::vector<float>* out) const {
     if (!node.exists() || !read_attribute(node, components, out)) return false;
     if (out->size() == components * count) return true;
-    node.fail(fmt::format("has {} vertices, POSITION has {}", out->size() / components, count));
+    node.fail(fmt::format("has {} vertices, but POSITION has {}", out->size() / components, count));
     return false;
   }
 
@@ -167,7 +167,7 @@ class PrimitiveReader {
       for (size_t i = 0; i < vertices; ++i) corners[i] = static_cast<uint32_t>(i);
     }
     if (mode == kTriangles && corners.size() % 3 != 0) {
-      node.fail(fmt::format("{} corners are no whole number of triangles", corners.size()));
+      node.fail(fmt::format("{} corners are not a multiple of 3", corners.size()));
       return false;
     }
     mesh->indices = to_triangles(std::move(corners), mode);
@@ -189,7 +189,7 @@ GltfMeshTable read_gltf_meshes(GltfDocument* document, ModelFile* model) {
   uint64_t total = 0;
   for (size_t i = 0; i < meshes.size(); ++i) total += meshes.at(i)["primitives"].size();
   if (total > document->source().options->limits.meshes)
-    meshes.fail(fmt::format("there are {} primitives", total));
+    meshes.fail(fmt::format("{} primitives exceed the limit", total));
   ProgressCount progress(document->source().options->progress, total);
   for (size_t i = 0; i < meshes.size() && document->errors().ok(); ++i) {
     const JsonNode primitives = meshes.at(i)["primitives"];

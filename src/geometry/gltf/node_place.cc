@@ -27,14 +27,14 @@ Affine3f from_matrix(const JsonNode& node) {
   float m[16];
   if (!node.numbers(m, 16)) return {};
   if (m[3] != 0 || m[7] != 0 || m[11] != 0 || m[15] != 1)
-    node.fail("is no affine map: its last row must be 0 0 0 1");
+    node.fail("is not an affine transform: its last row must be 0 0 0 1");
   return {{m[0], m[1], m[2]}, {m[4], m[5], m[6]}, {m[8], m[9], m[10]}, {m[12], m[13], m[14]}};
 }
 
 Affine3f from_parts(const JsonNode& node) {
   std::array<float, 4> q = {0, 0, 0, 1};
   if (node["rotation"].numbers(q.data(), 4) && !normalize_rotation(&q)) {
-    node["rotation"].fail("is no rotation: the quaternion is zero or too large");
+    node["rotation"].fail("is not a rotation: the quaternion is zero or too large");
     return {};
   }
   Affine3f out = place_from(q, node["scale"].vec3({1, 1, 1}));

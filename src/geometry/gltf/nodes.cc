@@ -46,7 +46,7 @@ class NodeReader {
       stack.pop_back();
       const JsonNode node = nodes_.at(static_cast<size_t>(visit.node));
       const Affine3f X_FN = visit.X_FP * place_in_parent(node);
-      if (!is_finite(X_FN)) return node.fail("its place is not finite");
+      if (!is_finite(X_FN)) return node.fail("its transform is not finite");
       add_content(node, X_FN);
       const std::vector<int>& children = children_[static_cast<size_t>(visit.node)];
       for (auto it = children.rbegin(); it != children.rend(); ++it) stack.push_back({*it, X_FN});
@@ -108,14 +108,14 @@ class NodeReader {
     }
     const int named = document_->root()["scene"].index(scenes.size(), "scene");
     if (scenes.size() > 1)
-      add_note(model_, fmt::format("of {} scenes only one is read", scenes.size()));
+      add_note(model_, fmt::format("only one of {} scenes is read", scenes.size()));
     const JsonNode roots = scenes.at(static_cast<size_t>(std::max(named, 0)))["nodes"];
     std::vector<bool> taken(parents_.size(), false);
     for (size_t i = 0; i < roots.size() && ok(); ++i) {
       const int root = roots.at(i).required_index(parents_.size(), "node");
       if (root < 0) break;
       if (parents_[static_cast<size_t>(root)] >= 0 || taken[static_cast<size_t>(root)])
-        roots.at(i).fail(fmt::format("node {} is no root, or is named twice", root));
+        roots.at(i).fail(fmt::format("node {} is not a root node or is listed twice", root));
       taken[static_cast<size_t>(root)] = true;
       out.push_back(root);
     }
@@ -132,8 +132,8 @@ class NodeReader {
       const int accessor = attribute.index(document_->root()["accessors"].size(), "accessor");
       if (accessor < 0 || !document_->read_floats(accessor, width, to)) return false;
       if (count != SIZE_MAX && count != to->size() / width)
-        attribute.fail(
-            fmt::format("has {} instances, another attribute {}", to->size() / width, count));
+        attribute.fail(fmt::format("has {} instances, but another attribute has {}",
+                                   to->size() / width, count));
       count = to->size() / width;
       return ok();
     };
@@ -141,7 +141,7 @@ class NodeReader {
       return false;
     if (count == SIZE_MAX) return true;  // nothing is said: the mesh itself
     if (count > document_->source().options->limits.instances) {
-      attributes.fail(fmt::format("has {} instances: more than the limit", count));
+      attributes.fail(fmt::format("has {} instances, which exceeds the limit", count));
       return false;
     }
     out->clear();
@@ -149,7 +149,7 @@ class NodeReader {
       std::array<float, 4> q = {0, 0, 0, 1};
       if (!turn.empty()) std::copy_n(&turn[4 * i], 4, q.begin());
       if (!normalize_rotation(&q)) {
-        attributes["ROTATION"].fail(fmt::format("instance {} has no rotation", i));
+        attributes["ROTATION"].fail(fmt::format("instance {} has an invalid rotation", i));
         return false;
       }
       const Vec3f s =
@@ -195,7 +195,7 @@ class NodeReader {
     if (copies.exists() && !read_copies(copies, &places)) return;
     for (const Affine3f& X_NC : places) {
       const Affine3f X_FC = copies.exists() ? X_FN * X_NC : X_FN;
-      if (!is_finite(X_FC)) return copies.fail("puts an instance at no finite place");
+      if (!is_finite(X_FC)) return copies.fail("gives an instance a transform that is not finite");
       for (const GltfMeshTable::Part& part : meshes_.parts[mesh]) {
         if (!ok()) return;
         if (model_->instances.size() >= limits.instances)
@@ -210,7 +210,7 @@ class NodeReader {
   }
 
   void add_content(const JsonNode& node, const Affine3f& X_FN) {
-    if (node["camera"].exists()) add_note(model_, "cameras are left out");
+    if (node["camera"].exists()) add_note(model_, "cameras are ignored");
     const ModelLimits& limits = document_->source().options->limits;
     const std::string name = node["name"].text().substr(0, kMaxName);
     if (const int mesh = node["mesh"].index(meshes_.parts.size(), "mesh"); mesh >= 0)

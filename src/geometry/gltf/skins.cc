@@ -99,7 +99,7 @@ GltfVertexWeights read_gltf_weights(GltfDocument* document, const JsonNode& attr
         !document->read_floats(w, 4, &weights.emplace_back()))
       return {};
     if (joints.back().size() != 4 * count || weights.back().size() != 4 * count) {
-      joint.fail(fmt::format("has joints of {} and weights of {} vertices, POSITION has {}",
+      joint.fail(fmt::format("has joints for {} and weights for {} vertices, but POSITION has {}",
                              joints.back().size() / 4, weights.back().size() / 4, count));
       return {};
     }
@@ -123,11 +123,12 @@ int add_bent_mesh(GltfDocument* document, const JsonNode& node, const GltfMeshTa
   constexpr size_t kVertexBytes = 2 * sizeof(Vec3f) + 2 * sizeof(Vec2f);
   if (model->meshes.size() >= document->source().options->limits.meshes ||
       !document->budget().take(mesh.positions.size(), kVertexBytes)) {
-    node.fail("with its skinned meshes the model unpacks to more than the limit");
+    node.fail("with its skinned meshes the model exceeds the size limit when decoded");
     return -1;
   }
   if (!bend_mesh(part.weights, X_FM, &mesh)) {
-    node["skin"].fail(fmt::format("a vertex names a joint beyond its {}", X_FM.size()));
+    node["skin"].fail(
+        fmt::format("a vertex refers to a joint that does not exist; there are {}", X_FM.size()));
     return -1;
   }
   const Status sound = finish_mesh(&mesh, node.pointer(), document->source().name, model);

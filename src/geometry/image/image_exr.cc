@@ -71,7 +71,7 @@ struct ExrHeader {
 std::string read_channels(Cursor cursor, ExrHeader* header) {
   for (;;) {
     const std::string name = cursor.text();
-    if (!cursor.ok()) return "its list of channels is damaged";
+    if (!cursor.ok()) return "its channel list is damaged";
     if (name.empty()) return header->channels.empty() ? "it has no channels" : "";
     const uint32_t type = cursor.u32();
     cursor.take(4);
@@ -166,7 +166,7 @@ Result<ExrImage> decode_exr(std::span<const uint8_t> bytes, const std::string& n
                             uint64_t max_values) {
   const auto bad = [&name](const std::string& what) {
     return Error{
-        ErrorKind::kInput, fmt::format("not a readable EXR picture: {}", what), {name, 0, 0}};
+        ErrorKind::kInput, fmt::format("not a readable EXR image: {}", what), {name, 0, 0}};
   };
   Cursor cursor(bytes);
   ExrHeader header;
@@ -177,7 +177,7 @@ Result<ExrImage> decode_exr(std::span<const uint8_t> bytes, const std::string& n
   const uint64_t values = uint64_t{width} * height * header.channels.size();
   if (values > max_values)
     return bad(fmt::format("it has {} values; the limit is {}", values, max_values));
-  if (header.row_bytes * height > bytes.size() * kMaxDeflateRatio) return bad("it ends too early");
+  if (header.row_bytes * height > bytes.size() * kMaxDeflateRatio) return bad("it is truncated");
 
   ExrImage image;
   image.width = static_cast<int>(width);
@@ -190,15 +190,15 @@ Result<ExrImage> decode_exr(std::span<const uint8_t> bytes, const std::string& n
   std::vector<uint8_t> rows;
   for (size_t first = 0; first < height; first += block) {
     const uint64_t offset = cursor.u64();
-    if (!cursor.ok() || offset > bytes.size()) return bad("its table of offsets is damaged");
+    if (!cursor.ok() || offset > bytes.size()) return bad("its offset table is damaged");
     Cursor chunk(bytes.subspan(offset));
     const int64_t y = int64_t{chunk.i32()} - header.min_y;
     const auto packed = chunk.take(chunk.u32());
     if (!chunk.ok() || y < 0 || static_cast<size_t>(y) >= height ||
         static_cast<size_t>(y) % block != 0)
-      return bad("its lines are damaged");
+      return bad("its scan lines are damaged");
     const size_t count = std::min(block, height - static_cast<size_t>(y));
-    if (!expand(packed, count * header.row_bytes, &rows)) return bad("its lines are damaged");
+    if (!expand(packed, count * header.row_bytes, &rows)) return bad("its scan lines are damaged");
     Cursor in(rows);
     for (size_t i = 0; i < count; ++i) read_row(header, &in, static_cast<size_t>(y) + i, &image);
   }

@@ -16,7 +16,7 @@ Result<Image8> read_image(const std::filesystem::path& path) {
   if (is_lfs_pointer({reinterpret_cast<const char*>(bytes.data()), bytes.size()}))
     return lfs_pointer_error(path.string());
   return Error{ErrorKind::kInput,
-               "is neither a PNG nor a JPEG picture",
+               "is neither a PNG nor a JPEG image",
                {path.string(), 0, 0},
                "convert it to PNG"};
 }
@@ -37,7 +37,9 @@ Result<ImageF> decode_float_image(std::span<const uint8_t> bytes, const std::str
   if (exr.find("R") == nullptr || planes.size() < 3) {
     planes = {exr.find("Y") != nullptr ? exr.find("Y") : &exr.planes.front()};
     if (exr.find("Y") == nullptr && exr.planes.size() != 1)
-      return Error{ErrorKind::kInput, "has neither R, G and B nor one grey channel", {name, 0, 0}};
+      return Error{ErrorKind::kInput,
+                   "has neither R, G and B channels nor a single grey channel",
+                   {name, 0, 0}};
   }
   ImageF out{exr.width, exr.height, static_cast<int>(planes.size()), {}};
   out.texels.resize(planes.front()->size() * planes.size());

@@ -24,7 +24,7 @@ std::string read_hdr_header(std::span<const uint8_t>* bytes, HdrHeader* out) {
   const size_t all = text.size();
   if (!take_line(&text).starts_with("#?")) return "it is not an HDR file";
   for (;;) {
-    if (text.empty()) return "its head has no end";
+    if (text.empty()) return "its header is not terminated";
     const std::string_view line = trim(take_line(&text));
     if (line.empty()) break;
     if (line.starts_with("FORMAT=") && line != "FORMAT=32-bit_rle_rgbe")
@@ -94,7 +94,7 @@ Result<ImageF> decode_hdr(std::span<const uint8_t> bytes, const std::string& nam
                           uint64_t max_pixels) {
   const auto bad = [&name](const std::string& what) {
     return Error{
-        ErrorKind::kInput, fmt::format("not a readable HDR picture: {}", what), {name, 0, 0}};
+        ErrorKind::kInput, fmt::format("not a readable HDR image: {}", what), {name, 0, 0}};
   };
   HdrHeader header;
   std::span<const uint8_t> in = bytes;

@@ -70,7 +70,7 @@ Result<Image8> decode_jpeg(std::span<const uint8_t> bytes, const std::string& na
   JpegReader reader;
   const auto bad = [&name](const std::string& what) {
     return Error{
-        ErrorKind::kInput, fmt::format("not a readable JPEG picture: {}", what), {name, 0, 0}};
+        ErrorKind::kInput, fmt::format("not a readable JPEG image: {}", what), {name, 0, 0}};
   };
   if (bytes.empty()) return bad("it is empty");
   if (!read_jpeg_header(&reader, bytes.data(), bytes.size())) return bad(reader.message);
@@ -89,7 +89,7 @@ Result<Image8> decode_jpeg(std::span<const uint8_t> bytes, const std::string& na
   image.texels.resize(row * height);
   if (!read_jpeg_rows(&reader, image.texels.data(), row)) return bad(reader.message);
   // A file that ends early is filled up with grey by libjpeg and only warned about.
-  if (reader.errors.num_warnings > 0) return bad("it is damaged or ends too early");
+  if (reader.errors.num_warnings > 0) return bad("it is damaged or truncated");
   return image;
 }
 

@@ -50,8 +50,8 @@ class KtxReader {
     width_ = u32(36);
     height_ = u32(40);
     if (type_ == 0 || format == 0)
-      return bad(
-          fmt::format("it is compressed (format 0x{:04x}); only plain texels are read", internal));
+      return bad(fmt::format(
+          "it is compressed (format 0x{:04x}); only uncompressed texels are supported", internal));
     is_srgb_ = internal == kSrgb || internal == kSrgb8 || internal == kSrgbAlpha ||
                internal == kSrgb8Alpha8;
     channels_ = format == kRed    ? 1
@@ -72,9 +72,9 @@ class KtxReader {
  private:
   Error bad(const std::string& what) const {
     return {ErrorKind::kInput,
-            fmt::format("not a readable KTX picture: {}", what),
+            fmt::format("not a readable KTX image: {}", what),
             {name_, 0, 0},
-            "convert it to PNG, or to KTX 1 without compression"};
+            "convert it to PNG or to uncompressed KTX 1"};
   }
   uint32_t u32(size_t at) const {
     uint32_t v;
@@ -85,7 +85,7 @@ class KtxReader {
   Result<KtxImage> read_faces() {
     const uint32_t depth = u32(44), array = u32(48), faces = u32(52), metadata = u32(60);
     if (depth > 1 || array != 0 || height_ == 0)
-      return bad("it is 1-D, 3-D or an array; only 2-D pictures and cubes are read");
+      return bad("it is 1-D, 3-D or an array; only 2-D images and cube maps are supported");
     if (faces != 1 && !(faces == 6 && width_ == height_))
       return bad(fmt::format("it has {} faces of {} x {}", faces, width_, height_));
     if (width_ == 0 || width_ > kMaxKtxSide || height_ > kMaxKtxSide ||
@@ -94,10 +94,10 @@ class KtxReader {
     const size_t row = (width_ * texel_bytes_ + 3) / 4 * 4, size = row * height_;
     const uint64_t start = kKtxHeaderBytes + uint64_t{metadata} + 4;  // start of the largest level
     if (start > bytes_.size() || faces * uint64_t{size} > bytes_.size() - start)
-      return bad(fmt::format("it ends too early: {} faces of {} bytes from byte {} do not fit",
-                             faces, size, start));
+      return bad(fmt::format("it is truncated: {} faces of {} bytes from byte {} do not fit", faces,
+                             size, start));
     if (u32(start - 4) != size)
-      return bad(fmt::format("its level has {} bytes, {} are needed", u32(start - 4), size));
+      return bad(fmt::format("its level has {} bytes, expected {}", u32(start - 4), size));
     const auto heads = bytes_.subspan(kKtxHeaderBytes, metadata);
     constexpr std::string_view kUp = "T=u";
     const bool upwards =

@@ -25,7 +25,7 @@ struct PngReader {
 
 void read_bytes(png_structp png, png_bytep out, size_t count) {
   auto* source = static_cast<Source*>(png_get_io_ptr(png));
-  if (source->bytes.size() - source->position < count) png_error(png, "the file ends too early");
+  if (source->bytes.size() - source->position < count) png_error(png, "the file is truncated");
   std::memcpy(out, source->bytes.data() + source->position, count);
   source->position += count;
 }
@@ -73,7 +73,7 @@ Result<Image> decode(std::span<const uint8_t> bytes, const std::string& name, ui
   Source source{bytes};
   const auto bad = [&](const std::string& what) {
     return Error{
-        ErrorKind::kInput, fmt::format("not a readable PNG picture: {}", what), {name, 0, 0}};
+        ErrorKind::kInput, fmt::format("not a readable PNG image: {}", what), {name, 0, 0}};
   };
   reader.png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &reader, on_png_error, on_warning);
   if (reader.png == nullptr) return bad("out of memory");
@@ -88,7 +88,7 @@ Result<Image> decode(std::span<const uint8_t> bytes, const std::string& name, ui
         fmt::format("{} x {} is too large; the limit is {} pixels", width, height, max_pixels));
   if (kWide && (png_get_bit_depth(reader.png, reader.info) != 16 ||
                 png_get_color_type(reader.png, reader.info) != PNG_COLOR_TYPE_GRAY))
-    return bad("16-bit grey was expected");
+    return bad("expected 16-bit grey");
   if (!prepare(&reader, kWide)) return bad(reader.message);
 
   *channels = png_get_channels(reader.png, reader.info);

@@ -72,18 +72,19 @@ std::vector<uint8_t> encode(const Layout& layout, const uint8_t* rows) {
 
 std::vector<uint8_t> encode_png8(int width, int height, int channels,
                                  std::span<const uint8_t> pixels) {
-  GLOAM_CHECK(width > 0 && height > 0 && channels >= 1 && channels <= 4, "bad size of a picture");
+  GLOAM_CHECK(width > 0 && height > 0 && channels >= 1 && channels <= 4, "invalid image size");
   const size_t row = static_cast<size_t>(width) * static_cast<size_t>(channels);
-  GLOAM_CHECK(pixels.size() == row * static_cast<size_t>(height), "pixels do not match the size");
+  GLOAM_CHECK(pixels.size() == row * static_cast<size_t>(height),
+              "the number of pixels does not match the image size");
   constexpr int kColorType[] = {PNG_COLOR_TYPE_GRAY, PNG_COLOR_TYPE_GRAY_ALPHA, PNG_COLOR_TYPE_RGB,
                                 PNG_COLOR_TYPE_RGB_ALPHA};
   return encode({width, height, 8, kColorType[channels - 1], row}, pixels.data());
 }
 
 std::vector<uint8_t> encode_png16(int width, int height, std::span<const uint16_t> pixels) {
-  GLOAM_CHECK(width > 0 && height > 0, "bad size of a picture");
+  GLOAM_CHECK(width > 0 && height > 0, "invalid image size");
   const size_t n = static_cast<size_t>(width) * static_cast<size_t>(height);
-  GLOAM_CHECK(pixels.size() == n, "pixels do not match the size");
+  GLOAM_CHECK(pixels.size() == n, "the number of pixels does not match the image size");
   return encode({width, height, 16, PNG_COLOR_TYPE_GRAY, 2 * static_cast<size_t>(width)},
                 reinterpret_cast<const uint8_t*>(pixels.data()));
 }

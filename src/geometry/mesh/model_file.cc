@@ -56,7 +56,7 @@ Result<ModelFile> read_by_format(const ModelSource& source) {
   const std::span<const uint8_t> bytes = source.bytes;
   constexpr uint64_t kGrowth = 3;  // size unpacked over the file's, nearly at most
   GLOAM_TRY_STATUS(check_memory(kGrowth * bytes.size(), fmt::format("unpacking '{}'", source.name),
-                                "use a mesh of fewer triangles"));
+                                "use a mesh with fewer triangles"));
   if (starts_with(bytes, "glTF")) return read_glb(source);
   if (starts_with(bytes, "ply\n") || starts_with(bytes, "ply\r")) return read_ply(source);
   const std::string ending = lower_extension(source.name);
@@ -67,7 +67,7 @@ Result<ModelFile> read_by_format(const ModelSource& source) {
   if (ending == ".gltf" || looks_like_json(bytes)) return read_gltf(source);
   if (starts_with(bytes, "solid")) return read_stl(source);
   return Error{ErrorKind::kInput,
-               "is none of glTF, GLB, COLLADA, OBJ, STL and PLY",
+               "is not a glTF, GLB, COLLADA, OBJ, STL or PLY file",
                {source.name, 0, 0},
                "convert it to GLB"};
 }

@@ -27,7 +27,7 @@ std::string why_not_a_relative_path(std::string_view name) {
   if (name.empty()) return "is empty";
   if (name.size() > 2000) return fmt::format("has {} characters", name.size());
   for (const char c : name)
-    if (static_cast<unsigned char>(c) < 0x20) return "holds a control character";
+    if (static_cast<unsigned char>(c) < 0x20) return "contains a control character";
   if (name.find(':') < name.find('/'))
     return "is a network address or has a drive or scheme; only files beside the model are read";
   if (name.front() == '/') return "is an absolute path; only files beside the model are read";
@@ -99,9 +99,9 @@ Result<ModelFolder> ModelFolder::open(const fs::path& model, const fs::path& roo
   out.root_ = root.empty() ? out.folder_ : fs::weakly_canonical(root, code);
   if (out.folder_ != out.root_ && !is_below(out.folder_, out.root_)) {
     return Error{ErrorKind::kInput,
-                 fmt::format("is not inside the folder '{}' given as root", root.string()),
+                 fmt::format("is outside of the root folder '{}'", root.string()),
                  {model.string(), 0, 0},
-                 "choose a root that holds the file"};
+                 "choose a root that contains the file"};
   }
   return out;
 }
@@ -110,18 +110,18 @@ Result<std::vector<uint8_t>> ModelFolder::read(std::string_view name, const Sour
                                                const ModelLimits& limits) {
   const auto refuse = [&](std::string_view why) {
     return Error{ErrorKind::kInput, fmt::format("the file name '{}' {}", name.substr(0, 200), why),
-                 loc, "put the file beside the model and name it by a relative path"};
+                 loc, "put the file beside the model and refer to it by a relative path"};
   };
-  if (root_.empty()) return refuse("cannot be looked up: the model is not read from a folder");
+  if (root_.empty()) return refuse("cannot be resolved: the model was not read from a folder");
   if (parts_.size() >= limits.external_files)
-    return refuse(fmt::format("is one too many: the limit is {}", limits.external_files));
+    return refuse(fmt::format("exceeds the limit of {} files", limits.external_files));
   fs::path path;
   std::error_code code;
   for (const std::string& reading : path_readings(name)) {
     if (const std::string why = why_not_a_relative_path(reading); !why.empty()) return refuse(why);
     path = fs::weakly_canonical(folder_ / fs::path(reading), code);
     if (code || !is_below(path, root_))
-      return refuse(fmt::format("leads out of the folder '{}'", root_.string()));
+      return refuse(fmt::format("leads outside of the folder '{}'", root_.string()));
     if (fs::exists(path, code)) break;
   }
   if (!fs::exists(path, code)) {
@@ -150,7 +150,7 @@ void ProgressCount::add(uint64_t done) {
 
 void add_note(ModelFile* model, std::string note) {
   if (std::find(model->notes.begin(), model->notes.end(), note) != model->notes.end()) return;
-  if (model->notes.size() + 1 == kMaxNotes) note = "there is more to note";
+  if (model->notes.size() + 1 == kMaxNotes) note = "further notes are omitted";
   if (model->notes.size() < kMaxNotes) model->notes.push_back(std::move(note));
 }
 
@@ -162,7 +162,7 @@ Status finish_mesh(TriangleMesh* mesh, const std::string& what, const std::strin
                  {file, 0, 0},
                  hint};
   };
-  const char* repair = "repair the mesh in the program that made it and export it again";
+  const char* repair = "repair the mesh in the program that created it and export it again";
   const auto bad3 = [](Vec3f v) { return not_finite(v); };
   const auto bad2 = [](Vec2f v) { return not_finite(v); };
   if (const uint64_t i = find_first(mesh->positions, bad3); i != kNoContent)

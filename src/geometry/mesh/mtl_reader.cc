@@ -100,7 +100,7 @@ class MtlParser {
     if (key == "ks") return read_color(line, &now_->specular.emplace());
     if (key == "tf") return read_color(line, &now_->filter.emplace());
     if (key == "illum") {
-      if (!parse_integer(take_word(&line), &now_->illum)) return bad("illum is no whole number");
+      if (!parse_integer(take_word(&line), &now_->illum)) return bad("illum is not an integer");
       return {};
     }
     return parse_map(key, line);
@@ -135,7 +135,7 @@ class MtlParser {
       return read_texture(line, map.texture);
     }
     if (!is_needless(key))
-      add_note(model_, fmt::format("'{:.40}' of the material library is left out", key));
+      add_note(model_, fmt::format("'{:.40}' in the material library is ignored", key));
     return {};
   }
 
@@ -148,14 +148,14 @@ class MtlParser {
   Status read_number(std::string_view line, float* out, float high) {
     const std::string_view word = take_word(&line);
     if (!parse_number(word, out) || !std::isfinite(*out))
-      return bad(fmt::format("'{}' is no finite number", word.substr(0, 40)));
+      return bad(fmt::format("'{}' is not a finite number", word.substr(0, 40)));
     *out = std::clamp(*out, 0.0f, high);
     return {};
   }
 
   Status read_color(std::string_view line, Vec3f* out) {
     if (trim(line).starts_with("spectral") || trim(line).starts_with("xyz")) {
-      add_note(model_, "colours by spectrum or XYZ are left out");
+      add_note(model_, "spectral and XYZ colours are ignored");
       return {};
     }
     GLOAM_TRY_STATUS(read_number(line, &out->x, 1e6f));
@@ -196,7 +196,7 @@ class MtlParser {
     if (word == "b") texture->channel = TextureChannel::kBlue;
     if (word == "m") texture->channel = TextureChannel::kAlpha;
     if (word == "l" || word == "z")
-      add_note(model_, "of '-imfchan l' and 'z' the red channel is taken");
+      add_note(model_, "the red channel is used for '-imfchan l' and 'z'");
   }
 
   Status read_texture(std::string_view line, TextureRef* texture) {
@@ -225,7 +225,7 @@ class MtlParser {
       } else {
         (void)take_word(&line);  // -blendu, -blendv, -boost, -cc, -texres, -type: one word each
         if (!is_map_option(option))
-          add_note(model_, fmt::format("the option '{:.40}' of a picture is left out", option));
+          add_note(model_, fmt::format("image option '{:.40}' is ignored", option));
       }
     }
     // MTL scales and moves with v upwards; UvTransform has it downwards: 1 - (s v + o).
@@ -242,17 +242,17 @@ class MtlParser {
       return {};
     }
     if (source_.folder == nullptr) {
-      add_note(model_, fmt::format("the picture '{}' was not looked for", name));
+      add_note(model_, fmt::format("image '{}' was not loaded: the model has no folder", name));
       return {};
     }
     Result<std::vector<uint8_t>> bytes =
         source_.folder->read(name, {file_, line_, 0}, source_.options->limits);
     if (!bytes.ok() && bytes.error().kind == ErrorKind::kIo) {
-      add_note(model_, fmt::format("the picture '{}' is missing", name.substr(0, kMaxName)));
+      add_note(model_, fmt::format("image '{}' is missing", name.substr(0, kMaxName)));
       return {};
     }
     if (!bytes.ok()) return std::move(bytes).error();
-    if (!budget_->take(bytes->size(), 1)) return bad("the pictures are larger than the limit");
+    if (!budget_->take(bytes->size(), 1)) return bad("the images exceed the size limit");
     *image = static_cast<int>(model_->images.size());
     model_->images.push_back({name, std::move(*bytes)});
     return {};
@@ -313,7 +313,7 @@ Status read_mtl_library(const ModelSource& source, const std::string& name, cons
     return parse_mtl(source, plain ? *plain : as_text(*text), name, budget, model);
   }
   if (text.error().kind != ErrorKind::kIo) return std::move(text).error();
-  add_note(model, fmt::format("the material library '{}' is missing", name.substr(0, kMaxName)));
+  add_note(model, fmt::format("material library '{}' is missing", name.substr(0, kMaxName)));
   return {};
 }
 

@@ -64,7 +64,7 @@ class PieceParser {
       std::string_view line = take_line(&text);
       ++out_.lines;
       if (line.ends_with('\\')) line = join(line, &text);
-      if (line.size() > kMaxLine) return fail("is longer than a line may be");
+      if (line.size() > kMaxLine) return fail("the line is too long");
       parse_line(line);
     }
   }
@@ -125,8 +125,8 @@ class PieceParser {
     for (float* value : out) {
       const std::string_view word = take_word(&line);
       if (parse_number(word, value)) continue;
-      fail(word.empty() ? fmt::format("{} numbers are needed", out.size())
-                        : fmt::format("'{}' is no number", word.substr(0, 40)));
+      fail(word.empty() ? fmt::format("expected {} numbers", out.size())
+                        : fmt::format("'{}' is not a number", word.substr(0, 40)));
       return false;
     }
     return true;
@@ -137,7 +137,7 @@ class PieceParser {
     for (std::string_view word; !(word = take_word(&line)).empty(); ++size) {
       Corner corner;
       if (!parse_corner(word, &corner))
-        return fail(fmt::format("'{}' is no corner of a face", word.substr(0, 40)));
+        return fail(fmt::format("'{}' is not a valid face corner", word.substr(0, 40)));
       out_.corners.push_back(corner);
     }
     out_.sizes.push_back(size);
@@ -230,7 +230,7 @@ class ObjReader {
     const uint64_t limit =
         std::min<uint64_t>(source_.options->limits.vertices, static_cast<uint64_t>(kMostIndex));
     if (count > limit || !budget_.take(count, sizeof(T)))
-      return bad(fmt::format("has {} {}: more than the limit", count, what));
+      return bad(fmt::format("has {} {}, which exceeds the limit", count, what));
     out->reserve(count);
     for (ObjPiece& piece : pieces_) {
       out->insert(out->end(), (piece.*member).begin(), (piece.*member).end());
@@ -326,7 +326,7 @@ class ObjReader {
       add_run(piece.sizes.size());
     }
     if (plans.size() > source_.options->limits.meshes)
-      return bad(fmt::format("has {} groups: more than the limit", plans.size()));
+      return bad(fmt::format("has {} groups, which exceeds the limit", plans.size()));
     return plans;
   }
 
@@ -374,13 +374,13 @@ class ObjReader {
       }
     }
     if (!budget_.take(vertices_.size() * 8 + polygons.corners.size() * 3, sizeof(float)))
-      return bad("unpacks to more than the limit", first_face);
+      return bad("exceeds the size limit when decoded", first_face);
     TriangleMesh mesh = take_vertices(has_uvs, has_normals);
     uint64_t face = 0;
     if (const std::string why =
             triangulate_polygons(mesh.positions, polygons, &mesh.indices, &face);
         !why.empty())
-      return bad(fmt::format("group '{}': its face {} {}", plan.group, face, why), first_face);
+      return bad(fmt::format("group '{}': face {} {}", plan.group, face, why), first_face);
     const std::string name = plan.group.empty() ? "the mesh" : "group '" + plan.group + "'";
     GLOAM_TRY_STATUS(finish_mesh(&mesh, name, source_.name, &model_));
     int index = static_cast<int>(model_.meshes.size()), material = material_index(plan.material);
@@ -430,7 +430,7 @@ class ObjReader {
     const auto [it, is_new] =
         materials_.try_emplace(name, static_cast<int>(model_.materials.size()));
     if (is_new) {
-      add_note(&model_, fmt::format("the material '{}' is not described anywhere", name));
+      add_note(&model_, fmt::format("material '{}' is not defined", name));
       model_.materials.emplace_back().name = name;
     }
     return it->second;

@@ -47,7 +47,7 @@ std::string read_line(std::string_view line, bool* has_format, PlyHeader* out) {
     if (out->elements.size() == kMostPlyElements) return "there are too many elements";
     out->elements.push_back(std::move(element));
   } else if (word == "property") {
-    if (out->elements.empty()) return "a property before the first element";
+    if (out->elements.empty()) return "property before the first element";
     std::vector<PlyProperty>& properties = out->elements.back().properties;
     if (properties.size() == kMostProperties) return "there are too many properties";
     PlyProperty property;
@@ -55,7 +55,7 @@ std::string read_line(std::string_view line, bool* has_format, PlyHeader* out) {
     if (type == "list") {
       property.count_type = type_of(take_word(&line));
       if (!property.count_type || *property.count_type >= PlyType::kFloat)
-        return "the list's length has no whole type";
+        return "the type of the list's length is not an integer type";
       type = take_word(&line);
     }
     const std::optional<PlyType> known = type_of(type);
@@ -64,7 +64,7 @@ std::string read_line(std::string_view line, bool* has_format, PlyHeader* out) {
     property.name = take_word(&line).substr(0, kMaxName);
     properties.push_back(std::move(property));
   } else if (!word.empty() && word != "ply" && word != "comment" && word != "obj_info") {
-    return fmt::format("'{}' does not belong into the head", word.substr(0, 40));
+    return fmt::format("unexpected '{}' in the header", word.substr(0, 40));
   }
   return {};
 }
@@ -101,14 +101,14 @@ Result<PlyHeader> read_ply_header(const ModelSource& source) {
     const std::string_view line = take_line(&text);
     ++out.lines;
     if (trim(line) == "end_header") {
-      if (!has_format) return bad("its head names no format");
+      if (!has_format) return bad("its header does not specify a format");
       out.bytes = source.bytes.size() - text.size();
       return out;
     }
     if (std::string why = read_line(line, &has_format, &out); !why.empty())
       return bad(std::move(why));
   }
-  return bad("its head has no end");
+  return bad("its header is not terminated");
 }
 
 }  // namespace gloam

@@ -120,7 +120,7 @@ class PlyReader {
     return {ErrorKind::kInput,
             std::move(message),
             {source_.name, static_cast<int>(std::min<uint64_t>(line, INT32_MAX)), 0},
-            "the file may be cut off: export or copy it again"};
+            "the file may be truncated; export or copy it again"};
   }
 
   // Sizes are checked against what the file can hold before memory is asked for.
@@ -131,27 +131,27 @@ class PlyReader {
       const bool is_text = header_.format == PlyFormat::kAscii;
       const uint64_t least = is_text ? 1 : element.least_bytes();
       if (least > 0 && element.count > body_.size() / least)
-        return bad(fmt::format("it names {} elements '{}', but only {} bytes follow its head",
+        return bad(fmt::format("it declares {} elements '{}', but only {} bytes follow its header",
                                element.count, element.name, body_.size()));
       if (element.name == "vertex") GLOAM_TRY_STATUS(prepare_vertices(e));
       for (const PlyProperty& p : element.properties) has_faces |= is_face_list(element, p);
       if (element.name == "tristrips") return bad("its triangle strips are not supported");
     }
     if (vertex_element_ == SIZE_MAX) return bad("it has no vertices");
-    if (!has_faces) return bad("it has no faces: point clouds are not read");
+    if (!has_faces) return bad("it has no faces: point clouds are not supported");
     return {};
   }
 
   Status prepare_vertices(size_t e) {
     const PlyElement& element = header_.elements[e];
-    if (vertex_element_ != SIZE_MAX) return bad("it has two lists of vertices");
+    if (vertex_element_ != SIZE_MAX) return bad("it has two vertex lists");
     vertex_element_ = e;
     const ModelLimits& limits = source_.options->limits;
     MemoryBudget budget(limits.decoded_bytes);
     if (element.count > limits.vertices || !budget.take(element.count, kSlots * sizeof(float)) ||
         !budget.take(body_.size(), 8))
-      return bad(fmt::format("has {} vertices: more than the limit", element.count));
-    if (element.has_lists()) return bad("its vertices hold lists");
+      return bad(fmt::format("has {} vertices, which exceeds the limit", element.count));
+    if (element.has_lists()) return bad("its vertices contain lists");
     std::array<bool, kSlots> has{};
     for (const PlyProperty& p : element.properties) {
       slots_.push_back(slot_of(p.name));
@@ -195,8 +195,8 @@ class PlyReader {
   }
 
   Error ends_early(const PlyElement& element, size_t at) const {
-    return bad(fmt::format("it ends within its elements '{}', after byte {}", element.name,
-                           header_.bytes + at));
+    return bad(fmt::format("it ends in the middle of its elements '{}', after byte {}",
+                           element.name, header_.bytes + at));
   }
 
   void read_vertices(const PlyElement& element, bool big, size_t at) {
@@ -270,7 +270,7 @@ class PlyReader {
     uint64_t needed = 0;
     for (const PlyElement& element : header_.elements) needed += element.count;
     if (first_row.back() < needed)
-      return bad(fmt::format("it names {} elements, but {} lines follow its head", needed,
+      return bad(fmt::format("it declares {} elements, but only {} lines follow its header", needed,
                              first_row.back()));
     parallel_for("parse PLY", static_cast<int64_t>(pieces.size()), [&](int64_t i) {
       parse_piece(first_row[static_cast<size_t>(i)], &pieces[static_cast<size_t>(i)]);
@@ -314,8 +314,8 @@ class PlyReader {
       float value;
       const std::string_view word = take_word(&line);
       if (!parse_number(word, &value)) {
-        piece->error = word.empty() ? "the line ends too early"
-                                    : fmt::format("'{}' is no number", word.substr(0, 40));
+        piece->error = word.empty() ? "the line is too short"
+                                    : fmt::format("'{}' is not a number", word.substr(0, 40));
         return false;
       }
       if (e == vertex_element_ && slots_[p] >= 0) numbers[static_cast<size_t>(slots_[p])] = value;
@@ -337,7 +337,7 @@ class PlyReader {
       const std::string_view word = take_word(line);
       int64_t index = 0;
       if (word.empty()) {
-        piece->error = fmt::format("the list is to have {} numbers and has {}", count, k);
+        piece->error = fmt::format("the list must have {} numbers, but has {}", count, k);
         return false;
       }
       if (!is_face) continue;

@@ -19,7 +19,7 @@ Error bad(const ModelSource& source, std::string message, uint64_t line = 0) {
   return {ErrorKind::kInput,
           std::move(message),
           {source.name, static_cast<int>(std::min<uint64_t>(line, INT32_MAX)), 0},
-          "the file may be cut off: export or copy it again"};
+          "the file may be truncated; export or copy it again"};
 }
 
 Result<ModelFile> finish(const ModelSource& source, const std::vector<Vec3f>& corners,
@@ -38,7 +38,7 @@ Status check_size(const ModelSource& source, uint64_t triangles) {
   // corners, the table that welds them, vertices and indices
   if (triangles > limits.triangles || 3 * triangles > limits.vertices ||
       !budget.take(3 * triangles, sizeof(Vec3f) * 2 + sizeof(uint32_t) * 5))
-    return bad(source, fmt::format("has {} triangles: more than the limit", triangles));
+    return bad(source, fmt::format("has {} triangles, which exceeds the limit", triangles));
   return {};
 }
 
@@ -48,7 +48,7 @@ Result<ModelFile> read_binary(const ModelSource& source) {
   uint32_t count;
   std::memcpy(&count, bytes.data() + 80, sizeof(count));
   if (uint64_t{count} * kTriangleBytes > bytes.size() - kStlHeaderBytes)
-    return bad(source, fmt::format("is neither STL text nor binary STL: its byte 80 names {} "
+    return bad(source, fmt::format("is neither text nor binary STL: its byte 80 declares {} "
                                    "triangles, but it has room for {}",
                                    count, (bytes.size() - kStlHeaderBytes) / kTriangleBytes));
   GLOAM_TRY_STATUS(check_size(source, count));
@@ -79,7 +79,7 @@ void parse_piece(std::string_view text, StlPiece* out) {
       for (float* value : {&p.x, &p.y, &p.z}) {
         const std::string_view number = take_word(&line);
         if (parse_number(number, value)) continue;
-        out->error = fmt::format("'{}' is no number", number.substr(0, 40));
+        out->error = fmt::format("'{}' is not a number", number.substr(0, 40));
         return;
       }
       out->corners.push_back(p);
@@ -94,7 +94,7 @@ void parse_piece(std::string_view text, StlPiece* out) {
       loop = 0;
     } else if (!word.empty() && word != "facet" && word != "endfacet" && word != "solid" &&
                word != "endsolid") {
-      out->error = fmt::format("'{}' does not belong into STL text", word.substr(0, 40));
+      out->error = fmt::format("unexpected '{}' in STL text", word.substr(0, 40));
       return;
     }
   }

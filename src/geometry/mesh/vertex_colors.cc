@@ -102,7 +102,7 @@ const PaintedMeshes::Picture& picture_of(std::span<const Vec3f> colors, int mesh
     Vec3f sum;
     for (const Vec3f c : colors) sum += c;
     out.color = sum / static_cast<float>(colors.size());
-    add_note(model, "of the vertex colours of a very large mesh only the mean is used");
+    add_note(model, "only the mean of the vertex colours of a very large mesh is used");
     return out;
   }
   out.color = {1, 1, 1};
@@ -127,7 +127,7 @@ int paint_vertices(std::span<const Vec3f> colors, int material, int* mesh, Paint
     const bool are_white =
         std::all_of(colors.begin(), colors.end(), [](Vec3f c) { return c == Vec3f{1, 1, 1}; });
     if (!are_white)
-      add_note(model, fmt::format("vertex colours on the textured material '{:.80}' are left out",
+      add_note(model, fmt::format("vertex colours on the textured material '{:.80}' are ignored",
                                   own.name));
     return material;
   }

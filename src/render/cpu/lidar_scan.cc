@@ -58,9 +58,9 @@ void scan_beams(const SceneView& scene, const CpuTracer& tracer, const LidarView
   const LidarOptics& optics = view.optics;
   GLOAM_CHECK(optics.footprint_rays >= 1 && optics.footprint_rays <= kMostFootprintRays &&
                   optics.most_returns >= 1 && optics.most_returns <= kMostLidarReturns,
-              "numbers of rays and returns are within their bounds");
+              "the number of rays or returns is out of range");
   GLOAM_CHECK(returns.size() == view.beams.size() * static_cast<size_t>(optics.most_returns),
-              "there is space for every return");
+              "the output must have room for every return");
   const DeviceSpan<const LidarMotion> motions{view.motions.data(),
                                               static_cast<uint32_t>(view.motions.size())};
   const ScanJob job{scene,

@@ -20,15 +20,17 @@ constexpr int kSamplesOfLaunch = 64;
 
 class Event {
  public:
-  Event() { check(cudaEventCreate(&event_), "the card gives no event"); }
+  Event() { check(cudaEventCreate(&event_), "cannot create a CUDA event"); }
   Event(const Event&) = delete;
   Event& operator=(const Event&) = delete;
   ~Event() { cudaEventDestroy(event_); }
-  void record(cuda::Stream stream) { check(cudaEventRecord(event_, stream), "an event fails"); }
+  void record(cuda::Stream stream) {
+    check(cudaEventRecord(event_, stream), "a CUDA event failed");
+  }
   /// [s]; both have happened.
   double since(const Event& start) const {
     float ms = 0;
-    check(cudaEventElapsedTime(&ms, start.event_, event_), "an event fails");
+    check(cudaEventElapsedTime(&ms, start.event_, event_), "a CUDA event failed");
     return 1e-3 * ms;
   }
 
@@ -39,7 +41,7 @@ class Event {
 class Card final : public CudaStages {
  public:
   explicit Card(std::string name) : name_(std::move(name)) {
-    check(cudaStreamCreate(&stream_), "the card gives no stream");
+    check(cudaStreamCreate(&stream_), "cannot create a CUDA stream");
   }
   ~Card() override {
     cudaStreamSynchronize(stream_);
@@ -58,10 +60,10 @@ class Card final : public CudaStages {
     std::vector<AmbientPath> paths(size_t{1} << kLog2AmbientPaths);
     auto* device = ambient_.reserve_of<AmbientPath>(paths.size());
     cuda::launch_ambient(picture, device, stream_);
-    check(cudaGetLastError(), "a kernel does not start");
+    check(cudaGetLastError(), "cannot launch a CUDA kernel");
     check(cudaMemcpyAsync(paths.data(), device, paths.size() * sizeof(AmbientPath),
                           cudaMemcpyDeviceToHost, stream_),
-          "the ambient light cannot be copied from the card");
+          "cannot copy the ambient light from the GPU");
     finish();
     return paths;
   }
@@ -76,7 +78,7 @@ class Card final : public CudaStages {
     uploaded_.record(stream_);
     // The channels need no zeros: the launches write every pixel of each.
     check(cudaMemsetAsync(picture.film.rays, 0, sizeof *picture.film.rays, stream_),
-          "the card's memory cannot be set");
+          "cannot set GPU memory");
     RenderStats stats;
     const auto begin = std::chrono::steady_clock::now();
     double told = 0;
@@ -91,7 +93,7 @@ class Card final : public CudaStages {
       } else {
         (plain ? cuda::launch_plain_direct : cuda::launch_full_direct)(picture, stream_);
       }
-      check(cudaGetLastError(), "a kernel does not start");
+      check(cudaGetLastError(), "cannot launch a CUDA kernel");
       if (!settings.progress || picture.last) continue;
       finish();
       const double now =
@@ -106,7 +108,7 @@ class Card final : public CudaStages {
       if (!centered || job.view.has_transparent) {
         (plain ? cuda::launch_plain_channels : cuda::launch_full_channels)(picture, centered,
                                                                            stream_);
-        check(cudaGetLastError(), "a kernel does not start");
+        check(cudaGetLastError(), "cannot launch a CUDA kernel");
       }
     }
     finished_.record(stream_);
@@ -161,7 +163,7 @@ class Card final : public CudaStages {
   void download(Film* film, DevicePicture& picture, RenderStats* stats) {
     char* host = staging_.reserve(film_bytes_);
     check(cudaMemcpyAsync(host, film_.data(), film_bytes_, cudaMemcpyDeviceToHost, stream_),
-          "the picture cannot be copied from the card");
+          "cannot copy the image from the GPU");
     finish();
     const char* base = static_cast<const char*>(film_.data());
     each_channel(*film, &picture.film, [&](auto& channel, auto* pointer) {
@@ -179,7 +181,7 @@ class Card final : public CudaStages {
     stats->rays = rays;
   }
 
-  void finish() { check(cudaStreamSynchronize(stream_), "a kernel fails"); }
+  void finish() { check(cudaStreamSynchronize(stream_), "a CUDA kernel failed"); }
 
   std::string name_;
   cuda::Stream stream_ = nullptr;
@@ -198,19 +200,19 @@ Result<std::unique_ptr<CudaStages>> CudaStages::make() {
   };
   int driver = 0;
   if (cudaDriverGetVersion(&driver) == cudaSuccess && driver == 0) {
-    return none("no NVIDIA card to render with: its driver is not installed");
+    return none("no NVIDIA GPU for rendering: the driver is not installed");
   }
   int count = 0;
   if (const cudaError_t error = cudaGetDeviceCount(&count); error != cudaSuccess || count == 0) {
-    return none(fmt::format("no NVIDIA card to render with: {}",
-                            error != cudaSuccess ? cudaGetErrorString(error) : "there is none"));
+    return none(fmt::format("no NVIDIA GPU for rendering: {}",
+                            error != cudaSuccess ? cudaGetErrorString(error) : "none was found"));
   }
   cudaDeviceProp properties;
   if (const cudaError_t error = cudaGetDeviceProperties(&properties, 0); error != cudaSuccess) {
-    return none(fmt::format("the NVIDIA card does not answer: {}", cudaGetErrorString(error)));
+    return none(fmt::format("the NVIDIA GPU does not respond: {}", cudaGetErrorString(error)));
   }
   if (properties.major < 9) {
-    return none(fmt::format("{} is of compute capability {}.{}; this build's kernels need 9.0",
+    return none(fmt::format("{} has compute capability {}.{}, but this build requires 9.0",
                             properties.name, properties.major, properties.minor));
   }
   return std::unique_ptr<CudaStages>(new Card(properties.name));

@@ -24,9 +24,9 @@ class DeviceBuffer {
 
   void* reserve(size_t bytes) {
     if (bytes > size_) {
-      check(cudaFree(data_), "memory of the card cannot be freed");
+      check(cudaFree(data_), "cannot free GPU memory");
       data_ = nullptr;
-      check(cudaMalloc(&data_, bytes), "the card's memory is full");
+      check(cudaMalloc(&data_, bytes), "out of GPU memory");
       size_ = bytes;
     }
     return data_;
@@ -52,9 +52,9 @@ class PinnedBuffer {
 
   char* reserve(size_t bytes) {
     if (bytes > size_) {
-      check(cudaFreeHost(data_), "pinned memory cannot be freed");
+      check(cudaFreeHost(data_), "cannot free pinned memory");
       data_ = nullptr;
-      check(cudaMallocHost(&data_, bytes), "no pinned memory is left");
+      check(cudaMallocHost(&data_, bytes), "out of pinned memory");
       size_ = bytes;
     }
     return static_cast<char*>(data_);

@@ -34,7 +34,7 @@ const void* DeviceScene::keep(const void* data, size_t bytes) {
   if (kept.bytes != bytes) {
     kept.bytes = bytes;
     check(cudaMemcpy(kept.buffer.reserve(bytes), data, bytes, cudaMemcpyHostToDevice),
-          "the scene cannot be copied to the card");
+          "cannot copy the scene to the GPU");
   }
   return kept.buffer.data();
 }
@@ -139,7 +139,7 @@ void DeviceScene::upload_trees(const BvhScene& bvh, Stream stream) {
     const size_t bytes = (all ? from.size() : fresh) * element;
     if (bytes == 0) return;
     check(cudaMemcpyAsync(device, from.data(), bytes, cudaMemcpyHostToDevice, stream),
-          "the BVH cannot be copied to the card");
+          "cannot copy the BVH to the GPU");
   };
   copy(bvh.nodes(), bvh.fresh_nodes(), &nodes_);
   copy(bvh.triangles(), bvh.fresh_triangles(), &triangles_);
@@ -152,7 +152,7 @@ void DeviceScene::upload(const CudaJob& job, Stream stream, DevicePicture* pictu
   parcel = {staging_.reserve(bytes), static_cast<char*>(parcel_.reserve(bytes)), 0};
   fill(job, &parcel, picture);
   check(cudaMemcpyAsync(parcel.device, parcel.host, bytes, cudaMemcpyHostToDevice, stream),
-        "the scene cannot be copied to the card");
+        "cannot copy the scene to the GPU");
   upload_trees(job.bvh, stream);
   picture->tracer.bvh.nodes = static_cast<const BvhNode*>(nodes_.data());
   picture->tracer.bvh.triangles = static_cast<const BvhTriangle*>(triangles_.data());

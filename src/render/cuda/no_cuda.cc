@@ -4,9 +4,9 @@ namespace gloam {
 
 Result<std::unique_ptr<CudaStages>> CudaStages::make() {
   return Error{ErrorKind::kUnsupported,
-               "this build has no CUDA",
+               "this build does not include CUDA",
                {},
-               "build it with GLOAM_PRESET=cuda ./gloam setup, or use --device cpu"};
+               "rebuild with GLOAM_PRESET=cuda ./gloam setup, or use --device cpu"};
 }
 
 }  // namespace gloam

@@ -41,7 +41,8 @@ struct HalfPlane {
 
 Result<std::vector<uint8_t>> encode_exr(int width, int height,
                                         std::span<const ExrChannel> channels) {
-  GLOAM_CHECK(width > 0 && height > 0 && !channels.empty(), "an EXR needs a size and a channel");
+  GLOAM_CHECK(width > 0 && height > 0 && !channels.empty(),
+              "an EXR image needs a positive size and at least one channel");
   const size_t n = static_cast<size_t>(width) * static_cast<size_t>(height);
   try {
     Imf::Header header(width, height);

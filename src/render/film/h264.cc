@@ -28,7 +28,7 @@ class OpenH264Encoder : public H264Encoder {
 
   Result<H264Picture> encode(const Yuv420& picture) override {
     GLOAM_CHECK(picture.width == width_ && picture.height == height_,
-                "all pictures of a video have one size");
+                "all images of a video must have the same size");
     SSourcePicture source = {};
     source.iColorFormat = videoFormatI420;
     source.iPicWidth = width_;
@@ -67,7 +67,7 @@ class OpenH264Encoder : public H264Encoder {
   // `nal` begins with a start code: 00 00 01 or 00 00 00 01.
   void add_nal(const uint8_t* nal, size_t size, std::vector<uint8_t>* out) {
     const size_t code = nal[2] == 1 ? 3 : 4;
-    GLOAM_CHECK(size > code, "OpenH264 gave an empty NAL unit");
+    GLOAM_CHECK(size > code, "OpenH264 returned an empty NAL unit");
     const int type = nal[code] & 0x1f;
     if (type == kNalSps || type == kNalPps) {  // they go into the header of the file, once
       (type == kNalSps ? sps_ : pps_).assign(nal + code, nal + size);
@@ -88,11 +88,11 @@ class OpenH264Encoder : public H264Encoder {
 
 Result<std::unique_ptr<H264Encoder>> H264Encoder::create(int width, int height, Rational rate,
                                                          int key_interval, int qp) {
-  GLOAM_CHECK(width % 2 == 0 && height % 2 == 0, "4:2:0 video has even sizes");
+  GLOAM_CHECK(width % 2 == 0 && height % 2 == 0, "4:2:0 video requires an even width and height");
   if (width < 16 || height < 16 || int64_t{width} * height > kMaxVideoPixels) {
     return Error{ErrorKind::kUnsupported,
-                 fmt::format("H.264 video of {} x {} pixels is not possible: at least 16 x 16, at "
-                             "most {} pixels",
+                 fmt::format("H.264 video of {} x {} pixels is not supported: it must have at "
+                             "least 16 x 16 and at most {} pixels",
                              width, height, kMaxVideoPixels),
                  {},
                  "change the resolution or record 'png' instead of 'video'"};
@@ -152,7 +152,7 @@ Result<std::unique_ptr<H264Encoder>> H264Encoder::create(int width, int height, 
   if (initialized == cmMallocMemeError) return no_memory_for("the H.264 encoder");
   if (initialized != cmResultSuccess)
     return Error{ErrorKind::kUnsupported,
-                 fmt::format("the H.264 encoder refused {} x {} pixels", width, height)};
+                 fmt::format("the H.264 encoder rejected {} x {} pixels", width, height)};
   return std::unique_ptr<H264Encoder>(new OpenH264Encoder(std::move(encoder), width, height));
 }
 

@@ -55,18 +55,18 @@ bool write_jpeg(int width, int height, const uint8_t* rgb, int quality, uint8_t*
 
 Result<std::vector<uint8_t>> encode_jpeg(int width, int height, std::span<const uint8_t> rgb,
                                          int quality) {
-  GLOAM_CHECK(quality >= 1 && quality <= 100, "the quality of a JPEG is 1 to 100");
+  GLOAM_CHECK(quality >= 1 && quality <= 100, "the JPEG quality must be from 1 to 100");
   if (width < 1 || height < 1 || width > JPEG_MAX_DIMENSION || height > JPEG_MAX_DIMENSION ||
       rgb.size() != 3 * static_cast<size_t>(width) * static_cast<size_t>(height)) {
     return Error{ErrorKind::kInput,
-                 "the picture has no colours, or its size is not one that JPEG can hold"};
+                 "the image has no colour, or its size is not supported by JPEG"};
   }
   uint8_t* bytes = nullptr;
   unsigned long size = 0;
   const bool ok = write_jpeg(width, height, rgb.data(), quality, &bytes, &size);
   std::vector<uint8_t> out(bytes, bytes + (ok ? size : 0));
   std::free(bytes);
-  if (!ok) return Error{ErrorKind::kIo, "there is no memory to compress the picture"};
+  if (!ok) return Error{ErrorKind::kIo, "out of memory while compressing the image"};
   return out;
 }
 

@@ -229,8 +229,8 @@ void write_fragment_defaults(uint32_t duration, BoxWriter* w) {
 }  // namespace
 
 Result<Mp4Writer> Mp4Writer::start(std::unique_ptr<ByteSink> sink, const Mp4Track& track) {
-  GLOAM_CHECK(track.sps.size() >= 4 && !track.pps.empty(), "an MP4 needs parameter sets");
-  GLOAM_CHECK(track.rate.num > 0 && track.rate.den > 0, "a frame rate is positive");
+  GLOAM_CHECK(track.sps.size() >= 4 && !track.pps.empty(), "an MP4 file needs parameter sets");
+  GLOAM_CHECK(track.rate.num > 0 && track.rate.den > 0, "the frame rate must be positive");
   Mp4Writer writer(std::move(sink), track);
   // Some players keep time badly with coarse scales, so the rate is expressed in units of at least
   // 1/10000 s, exactly.
@@ -295,7 +295,7 @@ std::vector<uint8_t> Mp4Writer::movie_header(bool indexed) const {
 }
 
 Status Mp4Writer::add(int64_t index, bool key, std::span<const uint8_t> sample) {
-  GLOAM_CHECK(samples_.empty() || index > samples_.back().index, "pictures come in order");
+  GLOAM_CHECK(samples_.empty() || index > samples_.back().index, "frames must be added in order");
   const int64_t first = samples_.empty() ? index : samples_.front().index;
   BoxWriter w;
   size_t data_offset = 0;

@@ -213,7 +213,7 @@ class OidnDenoiser : public Denoiser {
       clean_up("normal", wide_, &*normal_filter_, &wide_.normal);
     }
     const std::vector<Vec3f> none;
-    GLOAM_CHECK(color_filter_.has_value(), "the denoiser has been made without its filter");
+    GLOAM_CHECK(color_filter_.has_value(), "the denoiser was created without its filter");
     Filter& filter = *color_filter_;
     filter.set("cleanAux", clean);
     filter.set_input("color", wide_.radiance, wide_);
@@ -236,7 +236,7 @@ class OidnDenoiser : public Denoiser {
   }
 
   const char* name() const override {
-    return device_.kind == DenoiseDevice::kCuda ? "Open Image Denoise, on the card"
+    return device_.kind == DenoiseDevice::kCuda ? "Open Image Denoise on the GPU"
                                                 : "Open Image Denoise";
   }
 
@@ -279,7 +279,7 @@ Result<Device> make_device(const OidnApi& api, DenoiseDevice kind) {
     return device;
   Error error{ErrorKind::kUnsupported,
               fmt::format("Open Image Denoise does not run on this {}: {}",
-                          kind == DenoiseDevice::kCuda ? "card" : "machine", message)};
+                          kind == DenoiseDevice::kCuda ? "GPU" : "machine", message)};
   if (device.handle != nullptr) api.release_device(device.handle);
   return error;
 }
@@ -304,7 +304,7 @@ Result<std::unique_ptr<Denoiser>> make_oidn_denoiser(const DenoiseOptions& optio
   OidnApi api;
   if (!load_functions(library, &api))
     return Error{ErrorKind::kUnsupported,
-                 "this Open Image Denoise is older than version 2",
+                 "the installed Open Image Denoise is older than version 2",
                  {},
                  "install version 2.3 or later"};
   GLOAM_TRY(const Device device, make_device(api, options.device));

@@ -31,7 +31,7 @@ float tone_curve(float x) {
 void tone_map(const std::vector<Vec3f>& radiance, int width, int height,
               const ToneMapSettings& settings, std::vector<uint8_t>* rgb) {
   const size_t n = static_cast<size_t>(width) * static_cast<size_t>(height);
-  GLOAM_CHECK(radiance.size() == n, "the radiance does not match the size of the picture");
+  GLOAM_CHECK(radiance.size() == n, "the number of radiance values does not match the image size");
   rgb->resize(3 * n);
   const float scale = 1 / max_luminance(settings.ev100);
   parallel_for_range("tone_map", height, 16, [&](int64_t begin, int64_t end) {

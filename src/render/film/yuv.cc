@@ -27,7 +27,7 @@ uint8_t to_byte(int x) { return static_cast<uint8_t>(std::clamp(x, 0, 255)); }
 void rgb_to_yuv420(int width, int height, std::span<const uint8_t> rgb, Yuv420* out) {
   GLOAM_CHECK(width > 0 && height > 0 &&
                   rgb.size() == 3 * static_cast<size_t>(width) * static_cast<size_t>(height),
-              "pixels do not match the size");
+              "the number of pixels does not match the image size");
   const int w = (width + 1) & ~1, h = (height + 1) & ~1;
   out->width = w;
   out->height = h;

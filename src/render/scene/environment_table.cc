@@ -24,11 +24,14 @@ Error map_error(const std::string& name, std::string message, std::string hint =
 
 Status check_texels(int width, int height, std::span<const Vec3f> texels, const std::string& name) {
   if (width < 1 || height < 1) {
-    return map_error(name, fmt::format("an environment map of {} x {} texels", width, height));
+    return map_error(name,
+                     fmt::format("an environment map cannot have {} x {} texels", width, height));
   }
   if (static_cast<uint64_t>(width) * static_cast<uint64_t>(height) > kMaxImagePixels) {
-    return map_error(name, fmt::format("an environment map of {} x {} texels; the limit is {}",
-                                       width, height, kMaxImagePixels));
+    return map_error(
+        name,
+        fmt::format("an environment map of {} x {} texels is too large; the limit is {} texels",
+                    width, height, kMaxImagePixels));
   }
   if (texels.size() != static_cast<size_t>(width) * static_cast<size_t>(height)) {
     return map_error(name, fmt::format("{} texels for an environment map of {} x {}", texels.size(),
@@ -42,7 +45,7 @@ Status check_texels(int width, int height, std::span<const Vec3f> texels, const 
         name,
         fmt::format("texel in column {}, row {} of the environment map is ({}, {}, {})",
                     i % static_cast<size_t>(width), i / static_cast<size_t>(width), t.x, t.y, t.z),
-        "light is finite and not negative: clamp the map where it was made");
+        "radiance must be finite and not negative; clamp the map in the program that created it");
   }
   return {};
 }
@@ -164,7 +167,8 @@ Result<EnvironmentTable> EnvironmentTable::make(int width, int height,
 }
 
 EnvironmentView EnvironmentTable::view(const Frame& R_WE, float scale) const {
-  GLOAM_CHECK(std::isfinite(scale) && scale >= 0, "scale of an environment");
+  GLOAM_CHECK(std::isfinite(scale) && scale >= 0,
+              "the scale of an environment must be finite and not negative");
   EnvironmentView view;
   view.texels = {texels_.data(), static_cast<uint32_t>(texels_.size())};
   view.levels = {levels_.data(), static_cast<uint32_t>(levels_.size())};

@@ -24,7 +24,7 @@ const MovingSky::Map& MovingSky::map_of(int row) {
   const SkyLight sky = sky_of_row(day_, row);
   Result<EnvironmentTable> table =
       EnvironmentTable::make(sky.width, sky.height, sky.texels, "moving sky");
-  GLOAM_CHECK(table.ok(), "a sky made for a height of the sun is light");
+  GLOAM_CHECK(table.ok(), "the generated sky must be finite and not negative");
   maps_.push_back(
       {row, std::move(table).value(), sky.sun_illuminance, luminance(sky.sky_illuminance)});
   return maps_.back();
@@ -49,7 +49,7 @@ void MovingSky::update(double time) {
 EnvironmentView MovingSky::view() const {
   const auto map =
       std::find_if(maps_.begin(), maps_.end(), [this](const Map& m) { return m.row == row_; });
-  GLOAM_CHECK(map != maps_.end(), "update must come before view");
+  GLOAM_CHECK(map != maps_.end(), "update() must be called before view()");
   EnvironmentView view =
       map->table.view(turned_about_z(std::atan2(sun_.to_sun.y, sun_.to_sun.x)), scale_);
   view.changes = true;

@@ -72,7 +72,7 @@ Status check_texture(const TextureDescription& texture) {
   for (const Image8& face : texture.faces) {
     if (face.width < 1 || face.height < 1 || face.channels < 1 || face.channels > 4 ||
         face.texels.size() != static_cast<size_t>(face.width) * face.height * face.channels) {
-      return bad("has a face without the texels that its size needs");
+      return bad("has a face whose number of texels does not match its size");
     }
     if (face.width != texture.faces[0].width || face.height != texture.faces[0].height) {
       return bad("has faces of different sizes");
@@ -105,7 +105,7 @@ Result<TextureStore> make_texture_store(const std::vector<TextureDescription>& t
       }
     }
     if (texel_count > UINT32_MAX) {
-      return Error{ErrorKind::kUnsupported, "the textures hold more than 4 G texels"};
+      return Error{ErrorKind::kUnsupported, "the textures have more than 4 G texels"};
     }
     store.textures.push_back(view);
   }

@@ -102,7 +102,7 @@ Status check_extinction(const std::string& name, const VolumeView& v,
                   "kg/m³); the limit is {:.3g}",
                   name, k * high, k, high, kMaxExtinction),
       {},
-      "make what is so thick a surface"};
+      "use a surface for such dense matter"};
 }
 
 VolumeView place(const VolumeDescription& in, VolumeView out) {
@@ -158,7 +158,7 @@ Result<VolumeStore> VolumeStore::make(const std::vector<MediumDescription>& medi
 }
 
 Status VolumeStore::replace(size_t volume, const VolumeDescription& with) {
-  GLOAM_CHECK(volume < views_.size(), "there is no such volume");
+  GLOAM_CHECK(volume < views_.size(), "the volume does not exist");
   GLOAM_TRY_STATUS(check_volume(with, static_cast<size_t>(with.medium) + 1));
   VolumeView& old = views_[volume];
   Fields& fields = fields_[volume];
@@ -195,7 +195,7 @@ void VolumeStore::follow(const std::vector<VolumeDescription>& volumes, const Po
     now.density = now.flame ? grids.flame : grids.density;
     now.temperature = now.flame ? nullptr : grids.temperature;
     if (fields_[i].density == now.density && fields_[i].temperature == now.temperature) continue;
-    GLOAM_CHECK(replace(i, now).ok(), "an effect made a field that cannot be drawn");
+    GLOAM_CHECK(replace(i, now).ok(), "an effect produced a field that cannot be rendered");
   }
 }
 

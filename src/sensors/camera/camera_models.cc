@@ -36,13 +36,13 @@ Result<std::unique_ptr<CameraModels>> CameraModels::create(const RenderDescripti
                  fmt::format("add a [camera.{}] to the scene (docs/sensors.md)", channel->model)};
   }
   if (channels.has("sensor_depth") && (intrinsics.orthographic || is_wide(intrinsics.lens))) {
-    return Error{ErrorKind::kInput,
-                 fmt::format("camera '{}' cannot match two such pictures: disparity is of lenses "
-                             "that keep straight lines, nearly",
-                             name),
-                 {},
-                 "give a camera with a [camera.stereo_depth] the lens pinhole, plumb_bob or "
-                 "rational_polynomial"};
+    return Error{
+        ErrorKind::kInput,
+        fmt::format("camera '{}' does not support stereo depth: disparity requires a lens that "
+                    "preserves straight lines",
+                    name),
+        {},
+        "use the lens pinhole, plumb_bob or rational_polynomial with [camera.stereo_depth]"};
   }
   const bool own = sensing.imager && sensing.imager->exposure;
   models->exposure_ = fixed_exposure(sensing, ev100);

@@ -56,19 +56,19 @@ Status check_numbers(const CameraRequest& request) {
   const int width = request.width, height = request.height;
   const bool own = width == 0 && height == 0;
   if (!own && (width < 1 || height < 1 || width > kMaxSide || height > kMaxSide)) {
-    return refuse(fmt::format("a picture of {} x {} pixels is not in 1 … {} on both sides", width,
-                              height, kMaxSide));
+    return refuse(fmt::format("an image of {} x {} pixels is not in 1 … {} in both dimensions",
+                              width, height, kMaxSide));
   }
   const RenderOptions& render = request.render;
   const int least = render.error ? kLeastAdaptiveSpp : 1;
   if (render.samples() < least || render.samples() > 65536) {
-    return refuse(fmt::format("spp = {} is not in {} … 65536{}", render.samples(), least,
-                              render.error ? ", the most samples of a pixel with 'error'" : ""));
+    return refuse(
+        fmt::format("spp = {} is not in {} … 65536{}", render.samples(), least,
+                    render.error ? ", the maximum number of samples per pixel with 'error'" : ""));
   }
   if (render.error && !(*render.error >= 1e-4 && *render.error <= 1))
     return refuse(fmt::format("error = {} is not in 0.0001 … 1", *render.error));
-  if (render.error && render.tier != "path")
-    return refuse("an error to reach is for the path tier alone");
+  if (render.error && render.tier != "path") return refuse("'error' requires the path tier");
   if (const int depth = request.render.max_depth.value_or(1); depth < 1 || depth > 64)
     return refuse(fmt::format("max_depth = {} is not in 1 … 64", depth));
   return {};
@@ -304,7 +304,7 @@ void CameraSensor::warn_of_noise(Renderer& renderer) {
   if (needed <= settings_.spp || !renderer.first_to_warn()) return;
   log_warning(
       "camera '{}': {} samples per pixel are too few for the light in this smoke or dust: its "
-      "pictures change from one to the next; some {} would do (spp), or the fast tier",
+      "images flicker; use about {} (spp) or the fast tier",
       camera().name, settings_.spp, needed);
 }
 

@@ -55,7 +55,7 @@ void Imager::develop(const std::vector<Vec3f>& radiance, const Exposure& exposur
   if (options_.jpeg <= 0) return;
   const auto packed = encode_jpeg(intrinsics_.width, intrinsics_.height, *rgb, options_.jpeg);
   if (!packed.ok()) return;  // a side that JPEG cannot hold: sizes are checked before
-  auto unpacked = decode_jpeg(*packed, "the camera's own picture");
+  auto unpacked = decode_jpeg(*packed, "the camera's own image");
   if (unpacked.ok()) *rgb = std::move(unpacked->texels);
 }
 

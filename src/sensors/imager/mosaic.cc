@@ -42,7 +42,7 @@ Estimates estimate(const std::vector<float>& values, int width, int height, int 
 }  // namespace
 
 Mosaic::Mosaic(const std::string& name) {
-  GLOAM_CHECK(name.size() == 4, "a mosaic has four letters");
+  GLOAM_CHECK(name.size() == 4, "a mosaic must have four letters");
   for (size_t i = 0; i < 4; ++i) colors_[i] = name[i] == 'r' ? 0 : name[i] == 'g' ? 1 : 2;
 }
 

@@ -67,7 +67,7 @@ Result<LidarModel> make_lidar_model(const LidarOptions& options) {
                  std::move(hint)};
   };
   const LidarPreset* preset = find_lidar_preset(options.preset);
-  if (preset == nullptr) return bad(fmt::format("has no preset '{}'", options.preset), "");
+  if (preset == nullptr) return bad(fmt::format("has an unknown preset '{}'", options.preset), "");
   LidarModel model = preset->make();
   if (options.pattern) {
     model.pattern = static_cast<LidarPatternKind>(place_of(*options.pattern, kLidarPatterns));
@@ -89,9 +89,9 @@ Result<LidarModel> make_lidar_model(const LidarOptions& options) {
   set_optics(options, &model.optics);
 
   if (!(model.optics.min_range < model.optics.max_range)) {
-    return bad(
-        fmt::format("sees from {} m to {} m", model.optics.min_range, model.optics.max_range),
-        "'max_range' must be more than 'min_range'");
+    return bad(fmt::format("has a range from {} m to {} m", model.optics.min_range,
+                           model.optics.max_range),
+               "'max_range' must be greater than 'min_range'");
   }
   // Limit on the beams of a scan; the densest sensors that are sold have less than a million.
   constexpr int64_t kMostBeams = int64_t{1} << 22;
@@ -101,24 +101,24 @@ Result<LidarModel> make_lidar_model(const LidarOptions& options) {
   const int64_t beams = is_rosette ? model.points : rings * model.columns;
   if (beams > kMostBeams) {
     return bad(fmt::format("has {} beams; the limit is {}", beams, kMostBeams),
-               "lower 'columns', 'rows' or 'points'");
+               "reduce 'columns', 'rows' or 'points'");
   }
   switch (model.pattern) {
     case LidarPatternKind::kSpinning:
       if (model.elevations.empty()) {
-        return bad("has no rings", "give 'elevations', or a preset with rings");
+        return bad("has no rings", "set 'elevations' or use a preset with rings");
       }
       break;
     case LidarPatternKind::kRaster:
     case LidarPatternKind::kFlash:
       if (model.rows < 1 || !(model.width > 0)) {
-        return bad("has a grid without its numbers",
-                   "give 'rows', 'columns' and 'field_of_view' to this pattern");
+        return bad("has an incomplete grid",
+                   "set 'rows', 'columns' and 'field_of_view' for this pattern");
       }
       break;
     case LidarPatternKind::kRosette:
       if (model.points < 1 || model.prism_hz[0] == 0) {
-        return bad("has no prisms that turn", "take the preset \"Mid-40\" for a rosette");
+        return bad("has no rotating prisms", "use the preset \"Mid-40\" for a rosette");
       }
   }
   return model;

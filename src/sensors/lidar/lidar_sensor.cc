@@ -80,7 +80,7 @@ Status LidarSensor::find_surfaces() {
     std::vector<std::string> names;
     for (const MaterialDescription& material : rendered_.materials) names.push_back(material.name);
     return Error{ErrorKind::kInput,
-                 fmt::format("lidar '{}': no material '{}' is drawn in this scene",
+                 fmt::format("lidar '{}': this scene does not render a material '{}'",
                              lidar_.options.name, wanted[k].material),
                  wanted[k].loc, suggest_name(wanted[k].material, names)};
   }
@@ -131,7 +131,7 @@ void LidarSensor::plan(std::span<const PoseFrame> keys, int64_t index) {
 
 std::shared_ptr<const LidarScan> LidarSensor::scan(Renderer& renderer, RenderTurns& turns,
                                                    std::span<const PoseFrame> keys, int64_t index) {
-  GLOAM_CHECK(keys.size() >= 2, "a scan has a beginning and an end");
+  GLOAM_CHECK(keys.size() >= 2, "a scan needs poses at its start and its end");
   plan(keys, index);
   const Affine3f X_BL =
       to_affine(lidar_.body == 0 ? from_origin(lidar_.X_BL, origin_) : lidar_.X_BL);

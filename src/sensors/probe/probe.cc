@@ -7,7 +7,7 @@ namespace gloam {
 
 Result<ProbeRenderer> ProbeSetup::renderer() const {
   if (sources.renderer) return sources.renderer(world);
-  return Error{ErrorKind::kUsage, "it takes a renderer, and none is there"};
+  return Error{ErrorKind::kUsage, "it requires a renderer, but there is none"};
 }
 
 void ProbeInstant::follow(const Snapshot& snapshot) {

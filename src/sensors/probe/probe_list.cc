@@ -30,13 +30,14 @@ constexpr ProbeRow kProbes[] = {
 constexpr bool all_words_are_made() {
   return std::ranges::equal(kProbes, kProbeQuantities, {}, &ProbeRow::word, &ProbeQuantity::word);
 }
-static_assert(all_words_are_made(), "a row for each quantity, in the order of their table");
+static_assert(all_words_are_made(),
+              "there must be one row per quantity, in the order of the quantity table");
 
 }  // namespace
 
 Result<ProbeReader> make_probe_reader(const ProbeDescription& probe, const ProbeSetup& setup) {
   const auto row = std::ranges::find(kProbes, probe.quantity->word, &ProbeRow::word);
-  GLOAM_CHECK(row != std::end(kProbes), "the scene has been checked");
+  GLOAM_CHECK(row != std::end(kProbes), "the quantity must exist in a validated scene");
   return row->make(probe, setup);
 }
 

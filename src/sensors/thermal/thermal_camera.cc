@@ -76,9 +76,9 @@ Result<ThermalCamera> ThermalCamera::make(const ThermalOptions& options,
     }
     if (!found)
       return Error{ErrorKind::kInput,
-                   fmt::format("a [[temperature]] fits nothing: body '{}', material '{}'", o.body,
-                               o.material),
-                   o.loc, "names are full names; * stands for any text"};
+                   fmt::format("a [[temperature]] matches nothing: body '{}', material '{}'",
+                               o.body, o.material),
+                   o.loc, "use full names; * matches any text"};
   }
   return camera;
 }

@@ -103,16 +103,16 @@ Result<std::unique_ptr<EmbreeScene>> EmbreeScene::make() {
     const RTCError error = rtcGetDeviceError(nullptr);
     return Error{ErrorKind::kUnsupported,
                  error == RTC_ERROR_OUT_OF_MEMORY
-                     ? "out of memory: Embree does not start"
-                     : fmt::format("Embree does not start (error {})", static_cast<int>(error))};
+                     ? "out of memory: cannot initialize Embree"
+                     : fmt::format("cannot initialize Embree (error {})", static_cast<int>(error))};
   }
   if (!is_embree_of_headers(device.get()))
     return Error{ErrorKind::kUnsupported,
-                 fmt::format("built with the headers of Embree {}, but the library that is loaded "
-                             "has another major version",
+                 fmt::format("built with the headers of Embree {}, but the loaded library has a "
+                             "different major version",
                              RTC_VERSION_MAJOR),
                  {},
-                 "./gloam setup builds for the Embree of this machine"};
+                 "run ./gloam setup to build for the Embree version on this machine"};
   return std::unique_ptr<EmbreeScene>(new EmbreeBuild(std::move(device)));
 }
 
