@@ -100,8 +100,9 @@ Status Agents::read_trees() {
       if (!node.target.empty() && !is_named(world_->robots) && !is_named(world_->agents))
         return Error{
             ErrorKind::kInput,
-            fmt::format("the behaviour tree names '{}', which is no robot or agent", node.target),
-            node.loc, "leave 'target' out for the nearest robot"};
+            fmt::format("the behaviour tree refers to '{}', which is neither a robot nor an agent",
+                        node.target),
+            node.loc, "omit 'target' to select the nearest robot"};
     }
     agent.tree = std::make_unique<TreeState>(*tree);
   }
@@ -163,9 +164,10 @@ Status Agents::place(bool tell) {
     if (!d.is_placed) {
       if (!draw_place(row, &at)) {
         return Error{ErrorKind::kInput,
-                     fmt::format("there is no room for '{}': {:.3g} m² to go in, and {} before it",
+                     fmt::format("there is no room for '{}': {:.3g} m² of walkable area, and {} "
+                                 "agents placed before it",
                                  d.name, nav_->mesh_of(row).area(), row),
-                     d.loc, "make the crowd smaller"};
+                     d.loc, "reduce the size of the crowd"};
       }
       heading = 2 * M_PI * agents_[row].stream(seed_, "agent.heading").uniform(0, 0);
     } else if (d.behavior == AgentBehavior::kSpline) {
@@ -178,15 +180,15 @@ Status Agents::place(bool tell) {
       if (at.ref == 0) at = nav_->mesh_of(row).nearest(p, kMostShift, 1);
       if (at.ref == 0) {
         return Error{ErrorKind::kInput,
-                     fmt::format("agent '{}' begins at ({:g}, {:g}, {:g}), where there is no room "
+                     fmt::format("agent '{}' starts at ({:g}, {:g}, {:g}), where there is no room "
                                  "for it, nor within {:g} m",
                                  d.name, p.x, p.y, p.z, kMostShift),
-                     d.loc, "move its position, or see [navigation] for what it needs"};
+                     d.loc, "change its position, or adjust [navigation]"};
       }
       if (tell && flat_norm(at.p - p) > 0.05)
         log_warning(
-            "{}:{}: agent '{}' begins at ({:g}, {:g}, {:g}), where there is no room for "
-            "it; it stands at ({:.2f}, {:.2f}, {:.2f}) instead",
+            "{}:{}: agent '{}' starts at ({:g}, {:g}, {:g}), where there is no room for it; it is "
+            "placed at ({:.2f}, {:.2f}, {:.2f}) instead",
             d.loc.file, d.loc.line, d.name, p.x, p.y, p.z, at.p.x, at.p.y, at.p.z);
     }
     stand(row, at, heading);

@@ -261,9 +261,9 @@ bool find_way(const NavMesh& mesh, Vec3d goal, AgentBody* agent) {
     const SourceLoc& loc = agent->description->loc;
     log_warning(
         "{}:{}: '{}' cannot reach ({:.2f}, {:.2f}, {:.2f}): {}; it goes to ({:.2f}, {:.2f}, "
-        "{:.2f}), the nearest point that it can reach",
+        "{:.2f}), the nearest reachable point",
         loc.file, loc.line, agent->description->name, goal.x, goal.y, goal.z,
-        is_on_mesh ? "no way leads there" : "there is no room to stand", end.x, end.y, end.z);
+        is_on_mesh ? "no path leads there" : "there is no room to stand", end.x, end.y, end.z);
   }
   return true;
 }

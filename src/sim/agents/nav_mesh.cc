@@ -49,17 +49,18 @@ Result<std::unique_ptr<NavMesh>> NavMesh::create(const NavSettings& settings) {
   const double columns = std::ceil(double{b.high.x - b.low.x} / edge),
                rows = std::ceil(double{b.high.y - b.low.y} / edge);
   if (!(columns * rows <= kMostTiles)) {
-    return Error{ErrorKind::kInput,
-                 fmt::format("where agents can go, {:.0f} x {:.0f} m, is too much for cells of "
-                             "{:g} m",
-                             double{b.high.x - b.low.x}, double{b.high.y - b.low.y}, settings.cell),
-                 {},
-                 fmt::format("give [navigation] a 'cell' of {:.2g} m",
-                             settings.cell * std::sqrt(columns * rows / kMostTiles) * 1.05)};
+    return Error{
+        ErrorKind::kInput,
+        fmt::format(
+            "the area that agents can use, {:.0f} x {:.0f} m, is too large for cells of {:g} m",
+            double{b.high.x - b.low.x}, double{b.high.y - b.low.y}, settings.cell),
+        {},
+        fmt::format("set 'cell' in [navigation] to {:.2g} m",
+                    settings.cell * std::sqrt(columns * rows / kMostTiles) * 1.05)};
   }
   mesh.columns = std::max(static_cast<int>(columns), 1);
   mesh.rows = std::max(static_cast<int>(rows), 1);
-  if (!made->clear()) return Error{ErrorKind::kInput, "there is no memory for the navigation mesh"};
+  if (!made->clear()) return Error{ErrorKind::kInput, "out of memory for the navigation mesh"};
   return made;
 }
 
@@ -87,10 +88,10 @@ void NavMesh::set_tile(int column, int row, const NavTile& tile) {
   if (tile.data.empty()) return;
   const size_t size = tile.data.size();
   auto* data = static_cast<unsigned char*>(dtAlloc(size, DT_ALLOC_PERM));
-  GLOAM_CHECK(data != nullptr, "no memory for a tile of the navigation mesh");
+  GLOAM_CHECK(data != nullptr, "out of memory for a tile of the navigation mesh");
   std::memcpy(data, tile.data.data(), size);
   const dtStatus status = mesh.addTile(data, static_cast<int>(size), DT_TILE_FREE_DATA, 0, nullptr);
-  GLOAM_CHECK(dtStatusSucceed(status), "Detour takes the tile that it has made");
+  GLOAM_CHECK(dtStatusSucceed(status), "Detour rejected a tile that it created");
 }
 
 void NavMesh::find_parts() {

@@ -34,7 +34,7 @@ struct NavPath::Impl {
 
 NavPath::NavPath() : impl_(std::make_unique<Impl>()) {
   const bool made = impl_->corridor.init(kMostPolys);
-  GLOAM_CHECK(made, "no memory for a way");
+  GLOAM_CHECK(made, "out of memory for a path");
 }
 NavPath::NavPath(NavPath&&) noexcept = default;
 NavPath::~NavPath() = default;
@@ -105,7 +105,7 @@ struct NavAvoidance::Impl {
 
 NavAvoidance::NavAvoidance() : impl_(std::make_unique<Impl>()) {
   const bool made = impl_->query.init(kMostCircles, kMostWalls);
-  GLOAM_CHECK(made, "no memory to avoid others");
+  GLOAM_CHECK(made, "out of memory for obstacle avoidance");
 }
 NavAvoidance::~NavAvoidance() = default;
 

@@ -215,9 +215,9 @@ Status NavWorld::make_meshes(const CompiledWorld& world) {
   };
   if (squares_.empty())
     return placed({ErrorKind::kInput,
-                   "there is no ground that people and vehicles could stand on",
+                   "there is no ground for people and vehicles to stand on",
                    {},
-                   "agents need colliders that stand still below them"});
+                   "agents need static colliders below them"});
   for (const AgentDescription& agent : world.agents) {
     NavSettings settings{o.cell, agent.height, agent.radius, o.climb, o.slope, bounds_};
     if (agent.kind == AgentKind::kPerson) settings.headroom = o.headroom;
@@ -257,7 +257,7 @@ void NavWorld::reset(const mjModel& m, const mjData& d) {
     if (mesh.is_initial) continue;
     if (mesh.initial.empty()) build_initial(&mesh);
     const bool is_empty = mesh.mesh->clear();
-    GLOAM_CHECK(is_empty, "no memory for the navigation mesh");
+    GLOAM_CHECK(is_empty, "out of memory for the navigation mesh");
     for (size_t i = 0; i < tiles; ++i) {
       const int columns = mesh.mesh->columns();
       mesh.mesh->set_tile(static_cast<int>(i) % columns, static_cast<int>(i) / columns,

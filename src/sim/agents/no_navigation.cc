@@ -9,9 +9,9 @@ NavMesh::NavMesh() = default;
 NavMesh::~NavMesh() = default;
 Result<std::unique_ptr<NavMesh>> NavMesh::create(const NavSettings&) {
   return Error{ErrorKind::kUnsupported,
-               "people and vehicles need Recast, which this build of Gloam is without",
+               "people and vehicles require Recast, which this build does not include",
                {},
-               "install librecast-dev and build anew, or take [[agent]] and [[crowd]] out"};
+               "install librecast-dev and rebuild, or remove [[agent]] and [[crowd]]"};
 }
 bool NavMesh::clear() { return false; }
 int NavMesh::columns() const { return 0; }

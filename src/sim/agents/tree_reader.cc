@@ -128,20 +128,21 @@ class TreeReader {
   Result<std::shared_ptr<const BehaviorTree>> read(const pugi::xml_document& document) {
     const pugi::xml_node root = document.child("root");
     if (!root)
-      return fail(document.first_child(), "has no <root>", "as BehaviorTree.CPP writes it");
+      return fail(document.first_child(), "has no <root>",
+                  "use the XML format of BehaviorTree.CPP");
     const std::string format = root.attribute("BTCPP_format").value();
     if (format != "4")
-      return fail(root, fmt::format("is of BTCPP_format '{}', not 4", format),
-                  "only format 4 is read");
+      return fail(root, fmt::format("has BTCPP_format '{}' instead of 4", format),
+                  "only format 4 is supported");
     for (const pugi::xml_node node : root.children()) {
       if (node.type() != pugi::node_element) continue;
       const std::string name = node.name();
       if (name == "TreeNodesModel") continue;
       if (name != "BehaviorTree")
         return fail(node, fmt::format("has a <{}> below <root>", name),
-                    "a <BehaviorTree> belongs there");
+                    "use a <BehaviorTree> there");
       const std::string id = node.attribute("ID").value();
-      if (id.empty()) return fail(node, "has a <BehaviorTree> without an ID", "name it");
+      if (id.empty()) return fail(node, "has a <BehaviorTree> without an ID", "give it an ID");
       if (!trees_.emplace(id, node).second)
         return fail(node, fmt::format("has two trees '{}'", id), "rename one of them");
     }
@@ -149,7 +150,7 @@ class TreeReader {
     std::string main = root.attribute("main_tree_to_execute").value();
     if (main.empty() && trees_.size() == 1) main = trees_.begin()->first;
     if (main.empty())
-      return fail(root, "does not say which of its trees to run", "give main_tree_to_execute");
+      return fail(root, "does not specify which of its trees to run", "set main_tree_to_execute");
     tree_ = std::make_shared<BehaviorTree>();
     GLOAM_TRY_STATUS(add_tree(root, main, {}, 1, nullptr));
     return std::shared_ptr<const BehaviorTree>(tree_);
@@ -175,8 +176,8 @@ class TreeReader {
     if (found == trees_.end())
       return fail(from, fmt::format("has no tree '{}'", id), suggest_name(id, tree_names()));
     if (std::find(open_.begin(), open_.end(), id) != open_.end())
-      return fail(from, fmt::format("has a SubTree '{}' that holds itself", id),
-                  "a tree that is to go on for ever has a Repeat of num_cycles=\"-1\"");
+      return fail(from, fmt::format("has a SubTree '{}' that contains itself", id),
+                  "to run a tree forever, use a Repeat with num_cycles=\"-1\"");
     pugi::xml_node child;
     for (const pugi::xml_node node : found->second.children()) {
       if (node.type() != pugi::node_element) continue;
@@ -184,7 +185,7 @@ class TreeReader {
         return fail(node, fmt::format("'{}' has two roots", id), "put them into a Sequence");
       child = node;
     }
-    if (!child) return fail(found->second, fmt::format("'{}' is empty", id), "give it a node");
+    if (!child) return fail(found->second, fmt::format("'{}' is empty", id), "add a node");
     open_.push_back(id);
     int first = 0;
     GLOAM_TRY_STATUS(add_node(child, ports, depth, &first));
@@ -202,9 +203,9 @@ class TreeReader {
     if (found != ports.end()) return found->second;
     std::vector<std::string> keys;
     for (const auto& [name, value] : ports) keys.push_back(name);
-    return fail(
-        node, fmt::format("asks for '{{{}}}', which nobody sets", key),
-        keys.empty() ? "write the value, or give it to the SubTree" : suggest_name(key, keys));
+    return fail(node, fmt::format("refers to '{{{}}}', which is not set", key),
+                keys.empty() ? "write the value itself, or pass it to the SubTree"
+                             : suggest_name(key, keys));
   }
 
   Status add_subtree(const pugi::xml_node& node, const Ports& ports, int depth, int* number) {
@@ -219,14 +220,14 @@ class TreeReader {
       GLOAM_TRY(inner[name], value_of(node, a.value(), ports));
     }
     if (node.first_child())
-      return fail(node, "has a SubTree with nodes of its own", "they belong into its tree");
+      return fail(node, "has a SubTree with child nodes", "move them into its tree");
     return add_tree(node, node.attribute("ID").value(), inner, depth, number);
   }
 
   Status add_node(const pugi::xml_node& node, const Ports& ports, int depth, int* number) {
     if (depth > kDeepestTree)
-      return fail(node, fmt::format("has more than {} nodes in each other", kDeepestTree),
-                  "make it flatter");
+      return fail(node, fmt::format("is nested more than {} levels deep", kDeepestTree),
+                  "reduce the nesting");
     std::string name = node.name();
     const bool has_id =
         name == "Action" || name == "Condition" || name == "Control" || name == "Decorator";
@@ -239,7 +240,8 @@ class TreeReader {
       return fail(node, fmt::format("has an unknown node '{}'", name),
                   suggest_name(name, node_names()));
     if (tree_->nodes.size() >= kMostNodes)
-      return fail(node, fmt::format("has more than {} nodes", kMostNodes), "make it smaller");
+      return fail(node, fmt::format("has more than {} nodes", kMostNodes),
+                  "reduce the number of nodes");
     const int own = static_cast<int>(tree_->nodes.size());
     tree_->nodes.emplace_back();
     GLOAM_TRY(TreeNode made, read_ports(node, *rule, has_id, ports));
@@ -253,12 +255,13 @@ class TreeReader {
     }
     if (children < rule->least_children || children > rule->most_children) {
       return fail(node,
-                  rule->most_children == 0 ? fmt::format("has a {} with nodes in it", name)
-                                           : fmt::format("has a {} with {} nodes in it", name,
-                                                         children == 0 ? "no" : "more than one"),
-                  rule->most_children == 0   ? "it is a leaf"
-                  : rule->most_children == 1 ? "it has exactly one"
-                                             : "give it one at least");
+                  rule->most_children == 0
+                      ? fmt::format("has a {} with child nodes", name)
+                      : fmt::format("has a {} with {}", name,
+                                    children == 0 ? "no child nodes" : "more than one child node"),
+                  rule->most_children == 0   ? "it is a leaf node"
+                  : rule->most_children == 1 ? "it must have exactly one"
+                                             : "add at least one");
     }
     tree_->nodes[static_cast<size_t>(own)] = std::move(made);
     *number = own;
@@ -280,21 +283,21 @@ class TreeReader {
         std::vector<std::string> names;
         for (const PortRule& p : rule.ports) names.emplace_back(p.name);
         return fail(node, fmt::format("has a {} with an unknown port '{}'", rule.name, name),
-                    name.starts_with("_") ? "scripts and conditions on nodes are not read"
-                    : names.empty()       ? "it has none"
+                    name.starts_with("_") ? "scripts and conditions on nodes are not supported"
+                    : names.empty()       ? "it has no ports"
                                           : suggest_name(name, names));
       }
       GLOAM_TRY(const std::string text, value_of(node, a.value(), ports));
       if (!set_port(port->port, text, &made))
         return fail(node, fmt::format("has a {} whose {} is '{}'", rule.name, name, text),
-                    port->port == Port::kGoal ? "a point is x;y;z in metres"
+                    port->port == Port::kGoal ? "expected a point, x;y;z in metres"
                     : port->port == Port::kCount || port->port == Port::kFailures
-                        ? "a whole number; -1 = without end, or all"
-                        : "a number that is not negative");
+                        ? "expected an integer; -1 = without limit, or all"
+                        : "expected a number that is not negative");
     }
     for (const PortRule& port : rule.ports) {
       if (port.required && !node.attribute(port.name))
-        return fail(node, fmt::format("has a {} without '{}'", rule.name, port.name), "give it");
+        return fail(node, fmt::format("has a {} without '{}'", rule.name, port.name), "add it");
     }
     return made;
   }

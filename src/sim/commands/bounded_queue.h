@@ -18,7 +18,7 @@ class BoundedQueue {
   explicit BoundedQueue(int capacity)
       : capacity_(static_cast<uint64_t>(capacity)),
         cells_(new Cell[static_cast<size_t>(capacity)]) {
-    GLOAM_CHECK(capacity >= 2, "the tickets of one cell cannot tell full from empty");
+    GLOAM_CHECK(capacity >= 2, "a bounded queue needs a capacity of at least 2");
     for (uint64_t i = 0; i < capacity_; ++i) cells_[i].ticket.store(i, std::memory_order_relaxed);
   }
 

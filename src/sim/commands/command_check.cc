@@ -50,7 +50,7 @@ class Check {
   Status operator()(const SetControl& c) const {
     GLOAM_TRY_STATUS(check_handle(c.actuator, "actuator", 0, model_.nactuator));
     if (model_.actuator_ctrlnum[c.actuator.id] != 1) {
-      return refuse(fmt::format("actuator {} takes {} controls, not one", c.actuator.id,
+      return refuse(fmt::format("actuator {} has {} controls, not one", c.actuator.id,
                                 model_.actuator_ctrlnum[c.actuator.id]),
                     "set its controls in a step hook or a controller");
     }
@@ -66,7 +66,7 @@ class Check {
     if (!fits(c.qpos, width.qpos) || !fits(c.qvel, width.qvel)) {
       return refuse(fmt::format("joint {} has {} positions and {} velocities, not {} and {}",
                                 c.joint.id, width.qpos, width.qvel, c.qpos.size(), c.qvel.size()),
-                    "give all of them, or none to leave them as they are");
+                    "set all of them, or none to keep the current values");
     }
     if (!finite(c.qpos) || !finite(c.qvel)) return refuse("the state of a joint is not finite");
     if (c.qpos.size() >= 4 && mju_norm(c.qpos.data() + c.qpos.size() - 4, 4) < 1e-6)
@@ -78,12 +78,12 @@ class Check {
     const RobotInstance& robot = world_.robots[static_cast<size_t>(c.robot.id)];
     const std::vector<int> actuators = robot_actuators(model_, robot);
     if (c.values.size() != actuators.size())
-      return refuse(fmt::format("robot '{}' has {} actuators, not {}", robot.name, actuators.size(),
-                                c.values.size()),
-                    "give one value for each of RobotInfo::actuators");
+      return refuse(fmt::format("robot '{}' has {} actuators, got {} values", robot.name,
+                                actuators.size(), c.values.size()),
+                    "pass one value per entry of RobotInfo::actuators");
     for (const int actuator : actuators)
       if (model_.actuator_ctrlnum[actuator] != 1)
-        return refuse(fmt::format("actuator {} takes more than one control", actuator),
+        return refuse(fmt::format("actuator {} has more than one control", actuator),
                       "set its controls in a step hook or a controller");
     if (!finite(c.values)) return refuse("a control is not a finite number");
     return {};
@@ -96,8 +96,8 @@ class Check {
   Status operator()(const SetJointGoal& c) const {
     GLOAM_TRY_STATUS(check_handle(c.joint, "joint", 0, model_.njnt));
     if (joint_width(model_.jnt_type[c.joint.id]).qpos != 1)
-      return refuse(fmt::format("joint {} is no hinge and no slide", c.joint.id),
-                    "its position is more than one number");
+      return refuse(fmt::format("joint {} is neither a hinge nor a slide", c.joint.id),
+                    "its position has more than one coordinate");
     if (!finite({c.position})) return refuse("the goal of a joint is not finite");
     return {};
   }
@@ -105,7 +105,7 @@ class Check {
     if (Status status = check_body(c.body); !status) return status;
     if (model_.body_mocapid[c.body.id] < 0) {
       return refuse(fmt::format("{} is not a mocap body", body_label(model_, c.body.id)),
-                    "give it mocap=\"true\" in the model");
+                    "set mocap=\"true\" in the model");
     }
     if (const AgentDescription* agent = find_agent(world_, c.body.id); agent != nullptr)
       return refuse(fmt::format("{} is agent '{}', which moves by itself",
@@ -126,9 +126,10 @@ class Check {
     if (Status status = check_body(c.body); !status) return status;
     if (!finite(c.velocity)) return refuse("a velocity is not finite");
     if (floating_joint(model_, c.body.id) < 0) {
-      return refuse(fmt::format("{} does not float: it has no free joint above it",
-                                body_label(model_, c.body.id)),
-                    "push it with a wrench instead");
+      return refuse(
+          fmt::format("{} is not free-floating: neither it nor an ancestor has a free joint",
+                      body_label(model_, c.body.id)),
+          "apply a wrench instead");
     }
     return {};
   }
@@ -148,8 +149,8 @@ class Check {
   Status check_handle(Handle<Kind> handle, const char* kind, int first, mjtSize end) const {
     if (handle.world != 0 && handle.world != serial_) {
       return refuse(
-          fmt::format("a handle of a {} is of another World than the one that runs", kind),
-          "find it again in Simulation::world(): a recompile makes a new World");
+          fmt::format("the handle of a {} belongs to a World other than the running one", kind),
+          "look it up again in Simulation::world(): a recompile creates a new World");
     }
     if (handle.id < first || handle.id >= end)
       return refuse(fmt::format("there is no {} number {}", kind, handle.id));

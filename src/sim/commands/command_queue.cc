@@ -30,7 +30,7 @@ Status CommandQueue::post(std::span<const Command> commands) {
   if (list == nullptr || arrivals_.try_push(list)) return {};  // the queue owns it now
   delete_list(list);
   return Error{ErrorKind::kIo,
-               fmt::format("the command queue is full: {} commands wait for the simulation",
+               fmt::format("the command queue is full: {} commands are waiting for the simulation",
                            arrivals_.capacity()),
                {},
                "post fewer commands per step, or let the simulation step"};
@@ -69,7 +69,7 @@ Result<std::vector<Command>> CommandQueue::history(int64_t run) {
   drain_log();
   if (lost_run_.load(std::memory_order_relaxed) == run) {
     return Error{ErrorKind::kPartial,
-                 fmt::format("this run has had more than {} Commands, which were not all kept",
+                 fmt::format("this run had more than {} Commands, and not all of them were kept",
                              log_capacity_),
                  {},
                  "take checkpoints after a reset, or post fewer Commands"};

@@ -174,20 +174,20 @@ Status check_live_field(const mjModel& model, const SetLiveField& change) {
   const int size = live_field_size(model, change.field);
   const int64_t end = int64_t{change.first} + static_cast<int64_t>(change.values.size());
   if (change.first < 0 || end > size || change.values.empty()) {
-    return Error{ErrorKind::kUsage,
-                 fmt::format("live field {} has {} values in this world; elements {} to {} are not "
-                             "a part of it",
-                             limits.name, size, change.first, end - 1)};
+    return Error{
+        ErrorKind::kUsage,
+        fmt::format("live field {} has {} values in this World; elements {} to {} are out of range",
+                    limits.name, size, change.first, end - 1)};
   }
   for (size_t i = 0; i < change.values.size(); ++i) {
     const double value = change.values[i];
     if (change.field == LiveFieldId::kBodyMass && value <= 0 &&
         model.body_mass[static_cast<size_t>(change.first) + i] > 0) {
-      return Error{ErrorKind::kUsage, fmt::format("a mass of {} kg is not positive", value)};
+      return Error{ErrorKind::kUsage, fmt::format("a mass must be positive, got {} kg", value)};
     }
     if (!(value >= limits.smallest && value <= limits.largest)) {
       return Error{ErrorKind::kUsage,
-                   fmt::format("{} is not a value of live field {} ({:g} … {:g})", value,
+                   fmt::format("{} is out of range for live field {} ({:g} … {:g})", value,
                                limits.name, limits.smallest, limits.largest)};
     }
   }
@@ -220,7 +220,7 @@ uint64_t live_fields_digest(const LiveFields& live) {
 }
 
 void own_live_field(LiveFieldId field, mjModel& model, std::vector<std::byte>* storage) {
-  GLOAM_CHECK(!derives_constants(field), "masses and armatures need a model of their own");
+  GLOAM_CHECK(!derives_constants(field), "masses and armatures require a private model");
   visit_field(model, field, [&](auto&& array, mjtSize n) {
     using Array = std::remove_reference_t<decltype(array)>;
     if constexpr (std::is_pointer_v<Array>) {  // the options are the model's own anyway
@@ -234,7 +234,7 @@ void own_live_field(LiveFieldId field, mjModel& model, std::vector<std::byte>* s
 Status write_live_field(const mjModel& world_model, LiveFieldId field,
                         std::span<const double> values, mjModel& model, mjData* scratch) {
   GLOAM_CHECK(static_cast<int>(values.size()) == live_field_size(model, field),
-              "a live field is written whole");
+              "a live field must be written as a whole");
   if (field == LiveFieldId::kBodyMass) {
     write_masses(world_model, values, model);
   } else {

@@ -136,7 +136,7 @@ Result<Range> rows_of(const mjModel& m, const std::string& field, const char* ro
   return Error{ErrorKind::kUsage,
                fmt::format("the rows of field '{}' have no names", field),
                {},
-               "leave the element out to get all of it"};
+               "omit the element to get all rows"};
 }
 
 }  // namespace

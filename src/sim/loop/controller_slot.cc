@@ -24,7 +24,7 @@ Result<ControllerSlot> ControllerSlot::make(const CompiledWorld& world, RobotCon
                  fmt::format("the controller's rate of {:g} Hz does not divide the simulation's "
                              "step rate of {:g} Hz",
                              rate.value(), 1 / timestep.value()),
-                 loc, "choose a rate of which the step rate is a multiple"};
+                 loc, "choose a rate that divides the step rate"};
   }
   return ControllerSlot{controller.robot, std::move(controller.controller), *schedule,
                         static_cast<double>(rate.den) / static_cast<double>(rate.num)};

@@ -85,12 +85,12 @@ bool is_sound(const mjModel& model, const mjData& data, std::span<const double> 
 
 Error describe_divergence(const mjModel& model, const mjData& data, std::span<const double> state,
                           int64_t step, double time) {
-  return Error{ErrorKind::kDiverged,
-               fmt::format("the simulation diverged in step {} (from t = {:.6g} s): {} left the "
-                           "finite numbers",
-                           step, time, culprit(model, data, state)),
-               {},
-               "lower the timestep, or soften contacts, gains and forces"};
+  return Error{
+      ErrorKind::kDiverged,
+      fmt::format("the simulation diverged in step {} (from t = {:.6g} s): {} is not finite", step,
+                  time, culprit(model, data, state)),
+      {},
+      "reduce the timestep, or soften contacts, gains and forces"};
 }
 
 }  // namespace gloam

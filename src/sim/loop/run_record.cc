@@ -33,9 +33,9 @@ Result<std::shared_ptr<const CompiledWorld>> RunRecord::Chapter::compiled() cons
   if (hash_sizes(*again.compiled()->model) == source->sizes) return again.compiled();
   return Error{
       ErrorKind::kInput,
-      fmt::format("the run was in another World from step {} on, whose files have changed", from),
+      fmt::format("from step {} on the run was in another World, whose files have changed", from),
       {source->scene.file.string(), 0, 0},
-      "bring back the files that it was compiled from"};
+      "restore the files that it was compiled from"};
 }
 
 }  // namespace gloam

@@ -27,7 +27,7 @@ Result<Body> find_body(const mjModel& model, const PushOptions& push) {
     const char* name = mj_id2name(&model, mjOBJ_BODY, body);
     if (name != nullptr) names.emplace_back(name);
   }
-  return Error{ErrorKind::kInput, fmt::format("a push names an unknown body '{}'", push.body),
+  return Error{ErrorKind::kInput, fmt::format("a push refers to an unknown body '{}'", push.body),
                push.loc, suggest_name(push.body, names)};
 }
 

@@ -44,7 +44,7 @@ Status SimLoop::add_controller(int robot, std::unique_ptr<Controller> controller
 Status SimLoop::exchange(NextWorld& next, const Correspondence& same) {
   if (stepper_->failed())
     return Error{ErrorKind::kUsage,
-                 "a simulation that has failed cannot go on in another World",
+                 "a failed simulation cannot continue in another World",
                  {},
                  "reset it first"};
   if (!next.stepper->take_over(*stepper_, same)) return next.stepper->error();
@@ -254,7 +254,8 @@ std::unique_ptr<LoopState> SimLoop::save() const {
 }
 
 Status SimLoop::restore(const LoopState& saved, const RunRecord& record) {
-  GLOAM_CHECK(saved.controllers.size() == controllers_.size(), "controllers of the same World");
+  GLOAM_CHECK(saved.controllers.size() == controllers_.size(),
+              "the controllers must belong to the same World");
   const double end = stepper_->time();
   if (!stepper_->restore(*saved.stepper)) return stepper_->error();
   end_run(end);

@@ -20,11 +20,12 @@ Result<std::unique_ptr<Simulator>> Simulator::create(std::shared_ptr<const Compi
     return Error{ErrorKind::kInput, fmt::format("a timestep of {} s is not in [1e-9, 1e3)", dt)};
   }
   if (!(options.speed > 0 && std::isfinite(options.speed))) {
-    return Error{ErrorKind::kUsage, fmt::format("a speed of {} is not positive", options.speed)};
+    return Error{ErrorKind::kUsage, fmt::format("speed must be positive, got {}", options.speed)};
   }
   if (options.command_capacity < 2 || options.command_capacity > 1 << 20) {
     return Error{ErrorKind::kUsage,
-                 fmt::format("a command queue of {} is not in 2 … 2^20", options.command_capacity)};
+                 fmt::format("the capacity of the command queue must be in 2 … 2^20, got {}",
+                             options.command_capacity)};
   }
   const Rational timestep = exact_rational(dt);
   GLOAM_TRY(NextWorld first,
@@ -87,7 +88,7 @@ Status Simulator::reset() {
 }
 
 void Simulator::set_pace(Pace pace, double speed) {
-  GLOAM_CHECK(speed > 0 && std::isfinite(speed), "the speed is a positive number");
+  GLOAM_CHECK(speed > 0 && std::isfinite(speed), "the speed must be positive and finite");
   call([this, pace, speed] {
     pace_ = pace;
     loop_.set_waits_for_sensors(pace == Pace::kSensors);
@@ -117,7 +118,8 @@ Status Simulator::seek(int64_t step) {
 Status Simulator::follow(std::unique_ptr<Motion> motion, int64_t end) {
   end_ = end;
   Stepper& stepper = loop_.stepper();
-  GLOAM_CHECK(!running_ && stepper.step_count() == 0, "a motion is followed from its beginning");
+  GLOAM_CHECK(!running_ && stepper.step_count() == 0,
+              "a motion must be followed from its beginning");
   return stepper.follow(std::move(motion)) ? Status() : Status(stepper.error());
 }
 
@@ -143,7 +145,7 @@ Status Simulator::recompile(std::shared_ptr<const CompiledWorld> world,
   const std::lock_guard one_at_a_time(recompile_mutex_);
   GLOAM_TRY_STATUS(check_timestep(*world));
   if (replays_)
-    return Error{ErrorKind::kUsage, "a log that is replayed is of one World: no recompile"};
+    return Error{ErrorKind::kUsage, "a replayed log has only one World and cannot be recompiled"};
   GLOAM_TRY(NextWorld next,
             make_next_world(world, seed_, own_timestep_, std::move(controllers), make_data_));
   const std::shared_ptr<const CompiledWorld> before = this->world();
@@ -195,7 +197,7 @@ Status Simulator::restore(const CheckpointData& checkpoint, const ControllerMake
   const double wanted = record.timestep.value_or(double{world->model->opt.timestep});
   if (!(exact_rational(wanted) == timestep()))
     return Error{ErrorKind::kUsage,
-                 fmt::format("the checkpoint is of a timestep of {:g} s, this simulation of {:g} s",
+                 fmt::format("the checkpoint has a timestep of {:g} s, this simulation {:g} s",
                              wanted, timestep().value())};
   std::unique_ptr<Restepper> again;
   if (checkpoint.copy == nullptr || world != this->world()) {
@@ -203,13 +205,13 @@ Status Simulator::restore(const CheckpointData& checkpoint, const ControllerMake
     GLOAM_TRY_STATUS(again->run_until(record.step));
     GLOAM_TRY_STATUS(again->begin_chapters());
     if (again->loop().stepper().hash() != record.hash) {
-      return Error{ErrorKind::kPartial,
-                   fmt::format("the run was stepped again to step {}, where its state hash is "
-                               "{:016x} and not {:016x}",
-                               record.step, again->loop().stepper().hash(), record.hash),
-                   {},
-                   "step hooks, and controllers that use anything but their inputs, are not "
-                   "repeated"};
+      return Error{
+          ErrorKind::kPartial,
+          fmt::format("the run was simulated again up to step {}, where its state hash is {:016x} "
+                      "instead of {:016x}",
+                      record.step, again->loop().stepper().hash(), record.hash),
+          {},
+          "step hooks, and controllers that use anything but their inputs, are not reproduced"};
     }
   }
   Status status;

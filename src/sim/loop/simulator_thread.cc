@@ -16,7 +16,7 @@ bool is_paced(Pace pace) { return pace == Pace::kRealTime || pace == Pace::kSens
 
 Error Simulator::no_call_from_a_step() {
   return {ErrorKind::kUsage,
-          "a controller or step hook cannot make its own simulation step, wait or change",
+          "a controller or step hook cannot step, wait for or change its own simulation",
           {},
           "call it from another thread, or post a Command"};
 }
@@ -159,7 +159,7 @@ bool Simulator::is_idle() {
 void Simulator::start(int64_t until) {
   const Turn turn(*this);
   const std::lock_guard lock(mutex_);
-  GLOAM_CHECK(!running_ && !quit_, "a Simulator starts once");
+  GLOAM_CHECK(!running_ && !quit_, "a Simulator can be started only once");
   until_ = pace_ == Pace::kLockstep ? loop_.stepper().step_count() : until;
   running_ = true;
   idle_ = false;

@@ -31,7 +31,8 @@ bool in_range(Rational r) {
 }  // namespace
 
 Rational exact_rational(double value) {
-  GLOAM_CHECK(std::isfinite(value) && std::abs(value) < 1e9, "not a time");
+  GLOAM_CHECK(std::isfinite(value) && std::abs(value) < 1e9,
+              "a time must be finite and below 1e9 s");
   // Convergents of the continued fraction: each is the best approximation of its size, and the
   // first that rounds to `value` is the fraction that was meant.
   const double x = std::abs(value);
@@ -73,7 +74,7 @@ Result<StepSchedule> StepSchedule::make(Rational rate, Rational phase, Rational 
     return Error{ErrorKind::kUsage,
                  fmt::format("a phase of {}/{} s is negative or too large", phase.num, phase.den)};
   }
-  GLOAM_CHECK(timestep.num > 0 && timestep.den > 0, "the timestep is positive");
+  GLOAM_CHECK(timestep.num > 0 && timestep.den > 0, "the timestep must be positive");
   StepSchedule schedule;
   schedule.offset_ = static_cast<__int128>(phase.num) * rate.num * timestep.den;
   schedule.stride_ = static_cast<__int128>(rate.den) * phase.den * timestep.den;
@@ -85,7 +86,7 @@ Result<StepSchedule> StepSchedule::make(Rational rate, Rational phase, Rational 
                  fmt::format("a rate of {:g} Hz is above the simulation's step rate of {:g} Hz",
                              rate.value(), 1 / timestep.value()),
                  {},
-                 "lower the rate or the timestep"};
+                 "reduce the rate or the timestep"};
   }
   return schedule;
 }

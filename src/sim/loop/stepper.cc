@@ -60,8 +60,7 @@ Status Stepper::make_memory(const DataMaker& make_data) {
   }
   GLOAM_TRY_STATUS(own_all());
   data_ = make_data({private_, &private_->model()});
-  if (data_ == nullptr)
-    return Error{ErrorKind::kInput, "there is no memory for physics to step in"};
+  if (data_ == nullptr) return Error{ErrorKind::kInput, "out of memory for the physics state"};
   return {};
 }
 

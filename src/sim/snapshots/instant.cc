@@ -47,15 +47,16 @@ struct Instant::Solved {
 
   template <class Kind>
   Status check(Handle<Kind> handle, mjtSize count) const {
-    if (!good) return Error{ErrorKind::kUsage, "no instant was solved"};
+    if (!good) return Error{ErrorKind::kUsage, "no instant has been computed"};
     if (handle.world != 0 && handle.world != world->serial) {
       return Error{ErrorKind::kUsage,
-                   "a handle is of another World than this instant",
+                   "the handle belongs to another World than this instant",
                    {},
-                   "find it again in Snapshot::world(): a recompile makes a new World"};
+                   "look it up again in Snapshot::world(): a recompile creates a new World"};
     }
     if (handle.id < 0 || handle.id >= count)
-      return Error{ErrorKind::kUsage, fmt::format("there is nothing with number {}", handle.id)};
+      return Error{ErrorKind::kUsage,
+                   fmt::format("the handle's number {} is out of range", handle.id)};
     return {};
   }
 };
@@ -221,7 +222,7 @@ const mjData* Instant::data() const { return solved_->data.get(); }
 
 Result<std::vector<double>> Instant::value(const std::string& field,
                                            const std::string& element) const {
-  if (!solved_->good) return Error{ErrorKind::kUsage, "no instant was solved"};
+  if (!solved_->good) return Error{ErrorKind::kUsage, "no instant has been computed"};
   return read_field(solved_->model, *solved_->data, field, element);
 }
 

@@ -58,7 +58,7 @@ Status PoseSolver::follow_live_fields(const std::shared_ptr<const LiveFields>& l
 
 Status PoseSolver::solve_bodies(const Snapshot& snapshot, PoseFrame& frame) {
   const SnapshotData& in = snapshot.data();
-  GLOAM_CHECK(in.world == world_, "a Snapshot of another World");
+  GLOAM_CHECK(in.world == world_, "the Snapshot belongs to another World");
   GLOAM_TRY_STATUS(follow_live_fields(in.live));
   const mjModel* model = &this->model();
   mjData* data = data_.get();

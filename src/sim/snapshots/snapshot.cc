@@ -10,8 +10,8 @@ namespace {
 template <class H>
 void check_handle(const SnapshotData& data, H handle, mjtSize count) {
   GLOAM_CHECK(handle.world == 0 || handle.world == data.world->serial,
-              "a handle of another World than the Snapshot's: find it again");
-  GLOAM_CHECK(handle.id >= 0 && handle.id < count, "there is no such thing in this World");
+              "the handle belongs to another World than the Snapshot; look it up again");
+  GLOAM_CHECK(handle.id >= 0 && handle.id < count, "the handle does not exist in this World");
 }
 
 }  // namespace
@@ -46,7 +46,7 @@ SensorState Snapshot::operator[](SensorHandle sensor) const {
 double Snapshot::control(Actuator actuator) const {
   const mjModel& model = *data_->world->model;
   check_handle(*data_, actuator, model.nactuator);
-  GLOAM_CHECK(model.actuator_ctrlnum[actuator.id] > 0, "an actuator without controls");
+  GLOAM_CHECK(model.actuator_ctrlnum[actuator.id] > 0, "the actuator has no controls");
   return state_part(model, state(),
                     mjSTATE_CTRL)[static_cast<size_t>(model.actuator_ctrladr[actuator.id])];
 }

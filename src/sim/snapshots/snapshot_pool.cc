@@ -32,7 +32,7 @@ struct SnapshotPool::SlotAllocator {
 
   T* allocate(size_t n) {
     static_assert(sizeof(T) <= kControlBlockBytes);
-    GLOAM_CHECK(n == 1, "a slot holds one control block");
+    GLOAM_CHECK(n == 1, "a slot has room for one control block");
     return reinterpret_cast<T*>(slot->control_block);
   }
   void deallocate(T*, size_t) { pool->put_back(slot); }

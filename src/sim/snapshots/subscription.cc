@@ -16,16 +16,16 @@ constexpr double kLongestWindow = 1000;  // [s]
 Result<Subscription> Subscription::make(const SubscriptionOptions& options, Rational timestep,
                                         const std::shared_ptr<Signal>& signal) {
   if (options.capacity < 1 || options.capacity > kLargestQueue) {
-    return Error{ErrorKind::kUsage, fmt::format("a queue of {} Snapshots is not in 1 … {}",
+    return Error{ErrorKind::kUsage, fmt::format("a queue of {} Snapshots is out of range (1 … {})",
                                                 options.capacity, kLargestQueue)};
   }
   if (options.batch < 1 || options.batch > options.capacity) {
-    return Error{ErrorKind::kUsage, fmt::format("a batch of {} Snapshots is not in 1 … {}",
+    return Error{ErrorKind::kUsage, fmt::format("a batch of {} Snapshots is out of range (1 … {})",
                                                 options.batch, options.capacity)};
   }
   GLOAM_TRY(StepSchedule schedule, StepSchedule::make(options.rate, options.phase, timestep));
   if (options.window.num < 0 || options.window.den <= 0 || options.window.value() > kLongestWindow)
-    return Error{ErrorKind::kUsage, fmt::format("a window of {:g} s is not in 0 … {} s",
+    return Error{ErrorKind::kUsage, fmt::format("a window of {:g} s is out of range (0 … {} s)",
                                                 options.window.value(), kLongestWindow)};
   Subscription subscription;
   subscription.queue_ = std::make_shared<SnapshotQueue>(options, signal);
@@ -37,10 +37,10 @@ Result<Subscription> Subscription::make(const SubscriptionOptions& options, Rati
   const int64_t room = period - 2 - (options.due ? period / 4 / kMostPending : 0);
   if (subscription.keys_.length() > room) {
     return Error{ErrorKind::kUsage,
-                 fmt::format("a window of {:g} s is too long for {:g} events a second",
+                 fmt::format("a window of {:g} s is too long for {:g} events per second",
                              options.window.value(), options.rate.value()),
                  {},
-                 "shorten it or lower the rate"};
+                 "use a shorter window or a lower rate"};
   }
   return subscription;
 }
@@ -75,7 +75,7 @@ bool Subscription::publish(int64_t step, Stepper& stepper, bool waits_for_sensor
   const SubscriptionOptions& options = queue_->options();
   const bool waits = options.required || (options.sensor && waits_for_sensors);
   if (event_ <= step) {
-    GLOAM_CHECK(pending_count_ < kMostPending, "windows overlap more than was agreed");
+    GLOAM_CHECK(pending_count_ < kMostPending, "windows overlap more than allowed");
     pending_[static_cast<size_t>(pending_count_++)].first = step;
     event_ = queue_->event_from(event_ + 1);
   }

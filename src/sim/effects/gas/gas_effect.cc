@@ -92,7 +92,7 @@ void GasEffect::reset() {
   coming_->wait();
   // There was memory for one before.
   const Status made = make_solver();
-  GLOAM_CHECK(made.ok(), "a gas cannot be made anew");
+  GLOAM_CHECK(made.ok(), "cannot recreate the gas solver");
   walls_ = {};
   make_clear();
   tick_ = -1;
@@ -116,7 +116,7 @@ void GasEffect::take_over(GasEffect& before) {
   std::vector<std::byte> state;
   before.solver_->save(&state);
   const Status restored = solver_->restore(state);
-  GLOAM_CHECK(restored.ok(), "a solver of the same grid takes the state of another");
+  GLOAM_CHECK(restored.ok(), "cannot restore the state of a solver with the same grid");
   walls_ = {};
   tick_ = before.tick_;
   now_ = before.now_;
@@ -251,8 +251,8 @@ void GasEffect::warn_of_blocked(const GasStep& step) {
   if (step.sources_blocked == 0 || warned_ || world_->gases.gases.size() > 1) return;
   warned_ = true;
   log_warning(
-      "gas '{}': {} of its fires and smokes lie in something solid or outside of it and "
-      "give nothing",
+      "gas '{}': {} of its fires and smokes are inside a solid or outside of the gas and emit "
+      "nothing",
       gas().name, step.sources_blocked);
 }
 

@@ -21,7 +21,7 @@ Status check_grid(const GasGrid& g, double sealed_gap) {
   const bool sized = g.voxel > 0 && std::isfinite(g.voxel) && std::isfinite(g.low.x) &&
                      std::isfinite(g.low.y) && std::isfinite(g.low.z);
   if (g.nx < 1 || g.ny < 1 || g.nz < 1 || !sized) {
-    return Error{ErrorKind::kUsage, fmt::format("a gas needs cells: {} x {} x {} of {} m are none",
+    return Error{ErrorKind::kUsage, fmt::format("a gas cannot have {} x {} x {} cells of {} m",
                                                 g.nx, g.ny, g.nz, g.voxel)};
   }
   if (!(sealed_gap >= 0 && std::isfinite(sealed_gap))) {
@@ -31,9 +31,9 @@ Status check_grid(const GasGrid& g, double sealed_gap) {
   if (double(g.nx) * g.ny * g.nz > kMostWallCells) {
     return Error{
         ErrorKind::kUsage,
-        fmt::format("{} x {} x {} cells of gas are too many", g.nx, g.ny, g.nz),
+        fmt::format("a gas of {} x {} x {} cells is too large", g.nx, g.ny, g.nz),
         {},
-        fmt::format("take larger voxels or a smaller domain: at most {:.0f}", kMostWallCells)};
+        fmt::format("use larger voxels or a smaller domain: at most {:.0f} cells", kMostWallCells)};
   }
   return {};
 }
@@ -271,8 +271,8 @@ void GasObstacles::write(bool anew, GasWalls* walls) {
 
 Status GasObstacles::solve(const Snapshot& snapshot, GasWalls* walls) {
   const SnapshotData& in = snapshot.data();
-  GLOAM_CHECK(in.world == world_, "a Snapshot of another World");
-  GLOAM_CHECK(walls != nullptr, "walls are asked for and not given");
+  GLOAM_CHECK(in.world == world_, "the Snapshot belongs to another World");
+  GLOAM_CHECK(walls != nullptr, "'walls' must not be null");
   GLOAM_TRY_STATUS(guarded([&] {
     mj_setState(&model_, data_.get(), in.state.data(), mjSTATE_INTEGRATION);
     mj_kinematics(&model_, data_.get());

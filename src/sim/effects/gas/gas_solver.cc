@@ -24,20 +24,22 @@ Error bad(std::string message, std::string hint) {
 Status check(const GasGrid& g) {
   for (const int n : {g.nx, g.ny, g.nz}) {
     if (n < kLeastCells || n > kMostCells) {
-      return bad(fmt::format("a gas grid of {} x {} x {} cells: each must lie in [{}, {}]", g.nx,
-                             g.ny, g.nz, kLeastCells, kMostCells),
-                 "change its size or its voxels");
+      return bad(
+          fmt::format("a gas grid cannot have {} x {} x {} cells: each number must be in [{}, {}]",
+                      g.nx, g.ny, g.nz, kLeastCells, kMostCells),
+          "change its size or the size of its voxels");
     }
   }
   if (!(g.voxel >= 1e-3f && g.voxel <= 100.0f)) {
-    return bad(fmt::format("voxels of {} m: they must lie in [0.001, 100] m", g.voxel), "");
+    return bad(fmt::format("voxels must have a size in [0.001, 100] m, got {} m", g.voxel), "");
   }
   if (!std::isfinite(g.low.x) || !std::isfinite(g.low.y) || !std::isfinite(g.low.z)) {
     return bad("the corner of a gas grid is not finite", "");
   }
   if (g.cells() > (size_t(1) << 27)) {
-    return bad(fmt::format("a gas grid of {} cells: at most 134217728", g.cells()),
-               "take larger voxels");
+    return bad(
+        fmt::format("a gas grid of {} cells is too large; the limit is 134217728", g.cells()),
+        "use larger voxels");
   }
   return {};
 }
@@ -59,8 +61,7 @@ Status check(const GasProperties& p) {
   for (const auto& r : ranges) {
     if (!(r.value >= r.low && r.value <= r.high)) {
       return bad(
-          fmt::format("{} = {} of a gas: it must lie in [{}, {}]", r.name, r.value, r.low, r.high),
-          "");
+          fmt::format("{} = {} of a gas must be in [{}, {}]", r.name, r.value, r.low, r.high), "");
     }
   }
   return {};
@@ -116,7 +117,7 @@ Result<std::unique_ptr<GasSolver>> GasSolver::create(const GasGrid& grid,
   GLOAM_TRY_STATUS(check(properties));
   GLOAM_TRY_STATUS(check_memory(
       bytes_of(grid), fmt::format("a gas grid of {} x {} x {} cells", grid.nx, grid.ny, grid.nz),
-      "take larger voxels or a smaller box"));
+      "use larger voxels or a smaller box"));
   auto state = std::make_unique<State>(grid, properties);
   if (device == GasDevice::kCuda) {
     GLOAM_TRY(state->card, gas::CudaGas::make(grid, state->openings, state->pressure.multigrid(),
@@ -132,7 +133,7 @@ void GasSolver::set_velocity(int axis, std::span<const float> faces) {
   State& state = *state_;
   state.fetch(gas::kVelocityFields);
   GLOAM_CHECK(axis >= 0 && axis < 3 && faces.size() == state.grid.faces(axis),
-              "velocities of another grid");
+              "the velocities belong to another grid");
   const gas::Shape& s = state.shape;
   for (int k = 0; k < s.nz + (axis == 2); ++k) {
     for (int j = 0; j < s.ny + (axis == 1); ++j) {

@@ -49,7 +49,7 @@ float GasSolver::State::max_speed() {
 GasStep GasSolver::step(float dt, std::span<const GasSource> sources, Vec3f wind,
                         std::span<const GasRotor> rotors, std::span<const GasEmission> emissions) {
   State& state = *state_;
-  GLOAM_CHECK(dt > 0 && std::isfinite(dt), "a step takes time");
+  GLOAM_CHECK(dt > 0 && std::isfinite(dt), "the time step must be positive and finite");
   float speed = std::max(state.max_speed(), length(wind));
   for (const GasSource& source : sources) {
     if (source.blows)

@@ -37,10 +37,11 @@ void copy_walls(const GasWalls& from, GasWalls* to) {
 }  // namespace
 
 void GasSolver::State::take_walls(const GasWalls& next) {
-  GLOAM_CHECK(next.grid == grid && next.solid.size() == grid.cells(), "walls of another grid");
+  GLOAM_CHECK(next.grid == grid && next.solid.size() == grid.cells(),
+              "the walls belong to another grid");
   for (int a = 0; a < 3; ++a) {
     GLOAM_CHECK(next.closed[a].size() == grid.faces(a) && next.velocity[a].size() == grid.faces(a),
-                "walls of another grid");
+                "the walls belong to another grid");
   }
   filled.clear();
   freed.clear();

@@ -41,9 +41,9 @@ class DeviceGas final : public CudaGas {
     for (auto& f : scalars_) f.reserve(size_t(shape_.size()));
     for (Field* f : host_) {
       must(cudaHostRegister(f->data(), f->size() * sizeof(float), cudaHostRegisterDefault),
-           "no memory can be pinned");
+           "cannot pin memory");
     }
-    must(cudaDeviceSynchronize(), "the card does not answer");
+    must(cudaDeviceSynchronize(), "the GPU does not respond");
   }
   ~DeviceGas() override {
     cudaStreamSynchronize(stream_);
@@ -93,7 +93,7 @@ class DeviceGas final : public CudaGas {
     cell_list_.resize(count);
     must(cudaMemcpyAsync(cell_list_.data(), values_.get(), count * sizeof(float),
                          cudaMemcpyDeviceToHost, stream_),
-         "nothing can be copied from the card");
+         "cannot copy from the GPU");
     finish();
     for (size_t f = 0; f < kCellValues; ++f) {
       for (size_t n = 0; n < cells.size(); ++n) {
@@ -148,8 +148,8 @@ class DeviceGas final : public CudaGas {
       }
     };
     must(cudaMemsetAsync(heated_.get(), 0, sizeof(float) * size_t(shape_.size()), stream_),
-         "memory cannot be set");
-    must(cudaMemsetAsync(numbers_.get(), 0, sizeof(CardNumbers), stream_), "memory cannot be set");
+         "cannot set GPU memory");
+    must(cudaMemsetAsync(numbers_.get(), 0, sizeof(CardNumbers), stream_), "cannot set GPU memory");
     for_gifts([&](const Gift& g, const int* at) { give(g, at, scalars, heated_.get(), stream_); });
     add(3, 3 + kScalars);
     react_all(shape_, step.rates, step.power, scalars, heated_.get(), burning_.get(), summing_);
@@ -191,7 +191,7 @@ class DeviceGas final : public CudaGas {
  private:
   static cudaStream_t make_stream() {
     cudaStream_t stream = nullptr;
-    must(cudaStreamCreateWithFlags(&stream, cudaStreamNonBlocking), "the card gives no stream");
+    must(cudaStreamCreateWithFlags(&stream, cudaStreamNonBlocking), "cannot create a CUDA stream");
     return stream;
   }
 
@@ -223,19 +223,19 @@ class DeviceGas final : public CudaGas {
       void* const to = up ? field(n) : host.data();
       const void* const from = up ? host.data() : field(n);
       must(cudaMemcpyAsync(to, from, host.size() * sizeof(float), way, stream_),
-           "a field of the gas cannot be copied");
+           "cannot copy a field of the gas");
     }
     finish();
   }
 
   void finish() {
-    must(cudaGetLastError(), "a kernel of the gas does not start");
-    must(cudaStreamSynchronize(stream_), "a kernel of the gas fails");
+    must(cudaGetLastError(), "cannot launch a gas kernel");
+    must(cudaStreamSynchronize(stream_), "a gas kernel failed");
   }
   void look() {
     must(cudaMemcpyAsync(look_.get(), numbers_.get(), sizeof(CardNumbers), cudaMemcpyDeviceToHost,
                          stream_),
-         "nothing can be copied from the card");
+         "cannot copy from the GPU");
     finish();
   }
   /// Result of find_most().
@@ -272,29 +272,30 @@ Result<std::unique_ptr<CudaGas>> CudaGas::make(const GasGrid& grid, const Openin
                                                const Multigrid& multigrid,
                                                const HostFields& fields) {
   const auto none = [](std::string why) {
-    return Error{ErrorKind::kUnsupported, std::move(why), {}, "step the gas on the CPU"};
+    return Error{ErrorKind::kUnsupported, std::move(why), {}, "simulate the gas on the CPU"};
   };
   int driver = 0, count = 0;
   if (cudaDriverGetVersion(&driver) == cudaSuccess && driver == 0) {
-    return none("no NVIDIA card for a gas: its driver is not installed");
+    return none("no NVIDIA GPU for gases: the driver is not installed");
   }
   if (const cudaError_t error = cudaGetDeviceCount(&count); error != cudaSuccess || count == 0) {
-    return none(fmt::format("no NVIDIA card for a gas: {}",
-                            error != cudaSuccess ? cudaGetErrorString(error) : "there is none"));
+    return none(fmt::format("no NVIDIA GPU for gases: {}",
+                            error != cudaSuccess ? cudaGetErrorString(error) : "none was found"));
   }
   cudaDeviceProp properties;
   if (const cudaError_t error = cudaGetDeviceProperties(&properties, 0); error != cudaSuccess) {
-    return none(fmt::format("the NVIDIA card does not answer: {}", cudaGetErrorString(error)));
+    return none(fmt::format("the NVIDIA GPU does not respond: {}", cudaGetErrorString(error)));
   }
   if (properties.major < 9) {
-    return none(fmt::format("{} is of compute capability {}.{}; the gas needs 9.0", properties.name,
-                            properties.major, properties.minor));
+    return none(fmt::format("{} has compute capability {}.{}, but gases require 9.0",
+                            properties.name, properties.major, properties.minor));
   }
   size_t free = 0, all = 0;
   const uint64_t need = uint64_t(openings.shape.size()) * kFloatsPerCell * sizeof(float);
   if (cudaMemGetInfo(&free, &all) != cudaSuccess || need > free) {
-    return none(fmt::format("a gas of {} cells needs {} MiB of the card's memory; {} are free",
-                            grid.cells(), need >> 20, free >> 20));
+    return none(
+        fmt::format("a gas of {} cells needs {} MiB of GPU memory, but only {} MiB are free",
+                    grid.cells(), need >> 20, free >> 20));
   }
   return std::unique_ptr<CudaGas>(
       new DeviceGas(properties.name, grid, openings, multigrid, fields));

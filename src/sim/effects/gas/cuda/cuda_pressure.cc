@@ -76,8 +76,8 @@ void CudaPressure::push(const Faces<float>& velocity, const float* share) {
 void CudaPressure::look() {
   must(cudaMemcpyAsync(host_, summing_.numbers, sizeof *host_, cudaMemcpyDeviceToHost,
                        summing_.stream),
-       "nothing can be copied from the card");
-  must(cudaStreamSynchronize(summing_.stream), "a kernel of the gas fails");
+       "cannot copy from the GPU");
+  must(cudaStreamSynchronize(summing_.stream), "a gas kernel failed");
 }
 
 Projection CudaPressure::project(const Faces<float>& velocity, const float* wanted, float voxel,
@@ -107,26 +107,27 @@ Projection CudaPressure::project(const Faces<float>& velocity, const float* want
   out.before = before / double(voxel);
   if (host_->norm > before) {  // the last solution is no help
     must(cudaMemsetAsync(x_.get(), 0, sizeof(float) * size_t(shape_.size()), stream),
-         "memory cannot be set");
+         "cannot set GPU memory");
     start_from_nothing(system, summing_);
     host_->norm = before;
   }
   if (iteration_ == nullptr) {
     // Its launches know no velocity, and all else of it stays where it is.
     cudaGraph_t graph = nullptr;
-    must(cudaStreamBeginCapture(stream, cudaStreamCaptureModeThreadLocal), "no graph can be made");
+    must(cudaStreamBeginCapture(stream, cudaStreamCaptureModeThreadLocal),
+         "cannot create a CUDA graph");
     multigrid_.precondition(residual_.get(), z_.get(), stream);
     iterate(system, summing_);
     must(cudaMemcpyAsync(host_, summing_.numbers, sizeof *host_, cudaMemcpyDeviceToHost, stream),
-         "nothing can be copied from the card");
-    must(cudaStreamEndCapture(stream, &graph), "no graph can be made");
-    must(cudaGraphInstantiate(&iteration_, graph, 0), "no graph can be made");
-    must(cudaGraphDestroy(graph), "no graph can be made");
+         "cannot copy from the GPU");
+    must(cudaStreamEndCapture(stream, &graph), "cannot create a CUDA graph");
+    must(cudaGraphInstantiate(&iteration_, graph, 0), "cannot create a CUDA graph");
+    must(cudaGraphDestroy(graph), "cannot create a CUDA graph");
   }
   while (host_->norm > goal && out.iterations < kMostIterations) {
     ++out.iterations;
-    must(cudaGraphLaunch(iteration_, stream), "a graph does not start");
-    must(cudaStreamSynchronize(stream), "a kernel of the gas fails");
+    must(cudaGraphLaunch(iteration_, stream), "cannot launch a CUDA graph");
+    must(cudaStreamSynchronize(stream), "a gas kernel failed");
     if (host_->positive == 0) break;  // nothing is left but rounding
     if (host_->norm > goal) continue;
     // The residual of conjugate gradients drifts from the true one: compute that, and go on if need

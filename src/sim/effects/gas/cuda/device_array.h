@@ -31,12 +31,11 @@ class DeviceArray {
   /// Grows, never shrinks; growing sets all to 0.
   void reserve(size_t size) {
     if (size <= size_) return;
-    must(cudaFree(data_), "memory of the card cannot be freed");
+    must(cudaFree(data_), "cannot free GPU memory");
     data_ = nullptr;
-    must(cudaMalloc(reinterpret_cast<void**>(&data_), size * sizeof(T)),
-         "the card's memory is full");
-    must(cudaMemset(data_, 0, size * sizeof(T)), "the card's memory cannot be set");
-    must(cudaDeviceSynchronize(), "the card's memory cannot be set");  // whatever stream comes next
+    must(cudaMalloc(reinterpret_cast<void**>(&data_), size * sizeof(T)), "out of GPU memory");
+    must(cudaMemset(data_, 0, size * sizeof(T)), "cannot set GPU memory");
+    must(cudaDeviceSynchronize(), "cannot set GPU memory");  // whatever stream comes next
     size_ = size;
   }
   /// A copy of host memory; the stream is waited for where that is not pinned.
@@ -44,7 +43,7 @@ class DeviceArray {
     if (from.empty()) return;
     reserve(from.size());
     must(cudaMemcpyAsync(data_, from.data(), from.size_bytes(), cudaMemcpyHostToDevice, stream),
-         "nothing can be copied to the card");
+         "cannot copy to the GPU");
   }
   void swap(DeviceArray& other) {
     std::swap(data_, other.data_);
@@ -68,10 +67,10 @@ class PinnedArray {
   /// Grows, never shrinks; growing loses what it held.
   T* reserve(size_t size) {
     if (size > size_) {
-      must(cudaFreeHost(data_), "pinned memory cannot be freed");
+      must(cudaFreeHost(data_), "cannot free pinned memory");
       data_ = nullptr;
       must(cudaMallocHost(reinterpret_cast<void**>(&data_), size * sizeof(T)),
-           "no pinned memory is left");
+           "out of pinned memory");
       size_ = size;
     }
     return data_;

@@ -248,7 +248,7 @@ void prolong_and_smooth(const PoissonView& v, const uint8_t* open, const float* 
 void allow_small_levels(const SmallLevels& s) {
   must(cudaFuncSetAttribute(small_kernel, cudaFuncAttributeMaxDynamicSharedMemorySize,
                             int(sizeof(float)) * s.values),
-       "a block gets too little memory");
+       "cannot reserve shared memory for a block");
 }
 
 void work_on_small_levels(const SmallLevels& s, int from, int to, cudaStream_t stream) {

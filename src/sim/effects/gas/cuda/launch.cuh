@@ -127,7 +127,7 @@ void sum_cells(const Shape& s, const Summing& to, F f, G finish) {
 /// numbers->most = bits of the largest f(c).
 template <class F>
 void find_most(const Shape& s, const Summing& to, F f) {
-  must(cudaMemsetAsync(&to.numbers->most, 0, sizeof(int), to.stream), "memory cannot be set");
+  must(cudaMemsetAsync(&to.numbers->most, 0, sizeof(int), to.stream), "cannot set GPU memory");
   launch::most_kernel<<<unsigned(s.nz), launch::kSumThreads, 0, to.stream>>>(s, to.numbers, f);
 }
 

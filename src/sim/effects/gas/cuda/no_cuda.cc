@@ -5,9 +5,9 @@ namespace gloam::gas {
 Result<std::unique_ptr<CudaGas>> CudaGas::make(const GasGrid&, const Openings&, const Multigrid&,
                                                const HostFields&) {
   return Error{ErrorKind::kUnsupported,
-               "this build has no CUDA",
+               "this build does not include CUDA",
                {},
-               "build it with GLOAM_PRESET=cuda ./gloam setup, or step the gas on the CPU"};
+               "rebuild with GLOAM_PRESET=cuda ./gloam setup, or simulate the gas on the CPU"};
 }
 
 }  // namespace gloam::gas
