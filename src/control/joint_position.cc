@@ -81,7 +81,7 @@ Result<std::unique_ptr<Controller>> make_joint_position_controller(const Compile
   if (joints.empty()) {
     return Error{ErrorKind::kInput,
                  fmt::format("robot '{}' has no motor or position servo on a joint, so controller "
-                             "'joint_position' has nothing to drive",
+                             "'joint_position' has nothing to control",
                              robot.name),
                  options.loc, "add actuators to its model"};
   }
@@ -95,7 +95,7 @@ Result<std::unique_ptr<Controller>> make_joint_position_controller(const Compile
     return Error{ErrorKind::kInput,
                  fmt::format("'target' has {} values, but {} joints of robot '{}' are driven",
                              options.target.size(), joints.size(), robot.name),
-                 options.loc, "give one angle per actuator, in the model's order"};
+                 options.loc, "set one angle per actuator, in the model's order"};
   }
   if (!(options.kp >= 0 && options.kd >= 0 && std::isfinite(options.kp + options.kd))) {
     return Error{ErrorKind::kInput, "'kp' and 'kd' must be finite and not negative", options.loc};

@@ -52,17 +52,18 @@ Result<std::unique_ptr<Controller>> make_torque_controller(const CompiledWorld& 
   std::vector<DrivenJoint> motors = driven_joints(*world.model, robot);
   std::erase_if(motors, [](const DrivenJoint& j) { return j.takes_target || j.gear == 0; });
   if (motors.empty()) {
-    return Error{ErrorKind::kInput,
-                 fmt::format("robot '{}' has no motor on a joint, so controller 'torque' has "
-                             "nothing to drive",
-                             robot.name),
-                 options.loc, "add <motor> actuators to its model"};
+    return Error{
+        ErrorKind::kInput,
+        fmt::format(
+            "robot '{}' has no motor on a joint, so controller 'torque' has nothing to control",
+            robot.name),
+        options.loc, "add <motor> actuators to its model"};
   }
   if (!options.target.empty() && options.target.size() != motors.size()) {
     return Error{ErrorKind::kInput,
                  fmt::format("'target' has {} values, but robot '{}' has {} motors",
                              options.target.size(), robot.name, motors.size()),
-                 options.loc, "give one torque per motor, in the model's order"};
+                 options.loc, "set one torque per motor, in the model's order"};
   }
   return std::unique_ptr<Controller>(
       std::make_unique<TorqueController>(std::move(motors), options.target));

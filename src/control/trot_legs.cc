@@ -63,7 +63,7 @@ Status find_motor(const mjModel& m, int joint, int i, Leg& leg) {
         m.actuator_dyntype[a] != mjDYN_NONE)
       return Error{.kind = ErrorKind::kUnsupported,
                    .message = "actuator '" + name_of(m, mjOBJ_ACTUATOR, a) +
-                              "' is not a torque motor, which the trot controller needs",
+                              "' is not a torque motor, which the trot controller requires",
                    .hint = "use <motor joint=\"" + joint_name + "\" ctrlrange=\"…\"/>"};
     const double gain = m.actuator_gainprm[mjNGAIN * a] * m.actuator_gear[6 * a];
     if (gain == 0)
@@ -117,7 +117,7 @@ Status find_foot(const mjModel& m, const mjData& d, int calf_body, const Matrix3
     return Error{.kind = ErrorKind::kUnsupported,
                  .message = "body '" + name_of(m, mjOBJ_BODY, calf_body) +
                             "' has no collision geom to stand on",
-                 .hint = "give the end of each leg a sphere"};
+                 .hint = "add a sphere at the end of each leg"};
   return {};
 }
 
@@ -127,9 +127,7 @@ Result<Quadruped> find_quadruped(const mjModel& m, const RobotInstance& robot) {
   const auto not_a_quadruped = [&](const std::string& why) {
     return Error{.kind = ErrorKind::kUnsupported,
                  .message = "robot '" + robot.name +
-                            "' is not a quadruped the trot controller "
-                            "can drive: " +
-                            why,
+                            "' is not a quadruped that the trot controller can control: " + why,
                  .loc = robot.options.controller.loc,
                  .hint = "it needs a free joint and four legs of three hinge joints each"};
   };
@@ -176,7 +174,7 @@ Result<Quadruped> find_quadruped(const mjModel& m, const RobotInstance& robot) {
     for (int i = 0; i < 3; ++i) {
       const int j = chain[i], dof = m.jnt_dofadr[j];
       if (m.jnt_type[j] != mjJNT_HINGE)
-        return not_a_quadruped("a leg has a joint that is no hinge");
+        return not_a_quadruped("a leg has a joint that is not a hinge");
       leg.qpos[i] = m.jnt_qposadr[j];
       leg.dof[i] = dof;
       leg.q_ref[i] = d.qpos[leg.qpos[i]];

@@ -21,20 +21,21 @@ void CdrWriter::write_string(std::string_view text) {
 }
 
 void CdrWriter::write_count(size_t count) {
-  GLOAM_CHECK(count <= std::numeric_limits<uint32_t>::max(), "CDR counts elements in 32 bits");
+  GLOAM_CHECK(count <= std::numeric_limits<uint32_t>::max(),
+              "the number of elements exceeds 32 bits");
   write(static_cast<uint32_t>(count));
 }
 
 CdrReader::CdrReader(std::span<const uint8_t> message) {
   if (message.size() < kCdrHead) {
-    fail("shorter than the head of four bytes");
+    fail("shorter than the header of four bytes");
     return;
   }
   body_ = message.subspan(kCdrHead);
   swap_ = message[1] == 0;
   if (message[0] != 0 || message[1] > 1) {
-    fail(fmt::format("the head {:02x} {:02x} is not that of plain CDR (00 00 or 00 01)", message[0],
-                     message[1]));
+    fail(fmt::format("the header {:02x} {:02x} is not a plain CDR header (00 00 or 00 01)",
+                     message[0], message[1]));
   }
 }
 
@@ -42,7 +43,7 @@ const uint8_t* CdrReader::take(size_t size, size_t count) {
   if (!ok()) return nullptr;
   const size_t padding = (size - (at_ & (size - 1))) & (size - 1);
   if (padding > left() || count > (left() - padding) / size) {
-    fail("the message ends too soon");
+    fail("the message is truncated");
     return nullptr;
   }
   const uint8_t* from = body_.data() + at_ + padding;
@@ -54,7 +55,8 @@ bool CdrReader::read_count(size_t* count, size_t least_size) {
   uint32_t declared = 0;
   if (!read(&declared)) return false;
   if (declared > left() / least_size) {
-    return fail(fmt::format("{} elements do not fit into the {} bytes left", declared, left()));
+    return fail(
+        fmt::format("{} elements do not fit into the remaining {} bytes", declared, left()));
   }
   *count = declared;
   return true;
@@ -68,9 +70,10 @@ bool CdrReader::read_string(std::string_view* text, size_t bound) {
     return true;
   }
   const auto* from = reinterpret_cast<const char*>(take(1, length));
-  if (from[length - 1] != 0) return fail("a string does not end with a zero");
+  if (from[length - 1] != 0) return fail("a string is not zero-terminated");
   if (bound != 0 && length - 1 > bound) {
-    return fail(fmt::format("a string of {} characters, where {} are allowed", length - 1, bound));
+    return fail(
+        fmt::format("a string of {} characters exceeds its bound of {}", length - 1, bound));
   }
   *text = std::string_view(from, length - 1);
   return true;
@@ -98,7 +101,7 @@ void CdrReader::add_place(std::string_view name) {
 Error CdrReader::error() const {
   const std::string where = place_.empty() ? "" : fmt::format(" in {}", place_);
   return Error{.message = fmt::format("CDR, byte {}{}: {}", failed_at_, where, failure_),
-               .hint = "the message is damaged or of another type"};
+               .hint = "the message is damaged or has another type"};
 }
 
 }  // namespace gloam

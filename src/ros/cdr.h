@@ -20,7 +20,8 @@
 
 namespace gloam {
 
-static_assert(std::endian::native == std::endian::little, "CdrWriter copies numbers as they are");
+static_assert(std::endian::native == std::endian::little,
+              "CdrWriter copies numbers without swapping bytes");
 
 /// What has one size on the wire. `char` and std::byte are the ROS types char and byte.
 template <class T>

@@ -37,7 +37,8 @@ void put_cdr(CdrWriter& writer, const T& value) {
   } else if constexpr (CdrPrimitive<T>) {
     writer.write(value);
   } else if constexpr (std::derived_from<T, std::string>) {
-    GLOAM_CHECK(kStringBound<T> == 0 || value.size() <= kStringBound<T>, "a string over its bound");
+    GLOAM_CHECK(kStringBound<T> == 0 || value.size() <= kStringBound<T>,
+                "a string exceeds its bound");
     writer.write_string(value);
   } else if constexpr (std::same_as<T, Bytes>) {
     writer.write_sequence(value.span());
@@ -46,7 +47,7 @@ void put_cdr(CdrWriter& writer, const T& value) {
   } else {
     constexpr size_t kMost = FieldTraits<T>::kSize;
     if constexpr (FieldTraits<T>::kIsSequence)
-      GLOAM_CHECK(kMost == 0 || value.size() <= kMost, "a sequence over its bound");
+      GLOAM_CHECK(kMost == 0 || value.size() <= kMost, "a sequence exceeds its bound");
     if constexpr (FieldTraits<T>::kIsSequence) writer.write_count(value.size());
     if constexpr (CdrPrimitive<Element>) {
       writer.write_array(std::span<const Element>(value));
@@ -102,7 +103,7 @@ bool get_cdr(CdrReader& reader, T* value) {
       size_t count = 0;
       if (!reader.read_count(&count, least_cdr_size<Element>())) return false;
       constexpr size_t kMost = FieldTraits<T>::kSize;
-      if (kMost != 0 && count > kMost) return reader.fail("a sequence is over its bound");
+      if (kMost != 0 && count > kMost) return reader.fail("a sequence exceeds its bound");
       value->resize(count);
     }
     if constexpr (CdrPrimitive<Element>) {
@@ -140,7 +141,7 @@ Result<T> decode(std::span<const uint8_t> bytes) {
   CdrReader reader(bytes);
   T message;
   if (get_cdr(reader, &message) && reader.left() > kMostPadding) {
-    reader.fail("the message has ended, but not its bytes");
+    reader.fail("there are unread bytes after the end of the message");
   }
   if (!reader.ok()) {
     Error error = reader.error();

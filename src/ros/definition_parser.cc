@@ -63,7 +63,7 @@ class DefinitionParser {
 
   Status read_line(std::string_view line);
   Result<TypeDescription> finish() {
-    if (expects_name_) return error("the name of a message is missing after a line of =");
+    if (expects_name_) return error("the name of a message is missing after a line of '='");
     return std::move(type_);
   }
 
@@ -102,13 +102,13 @@ Status DefinitionParser::read_line(std::string_view line) {
 Status DefinitionParser::read_header(std::string_view line) {
   constexpr std::string_view kMessage = "MSG: ";
   if (!line.starts_with(kMessage)) {
-    return error(fmt::format("'{}' where 'MSG: package/Name' should be", line.substr(0, 40)),
-                 line.starts_with("IDL:") ? "definitions in IDL are not read" : "");
+    return error(fmt::format("expected 'MSG: package/Name' instead of '{}'", line.substr(0, 40)),
+                 line.starts_with("IDL:") ? "IDL definitions are not supported" : "");
   }
   const std::string_view short_name = without_spaces(line.substr(kMessage.size()));
   const std::string name = full_name(short_name, "");
   if (name.empty() || short_name.find('/') == std::string_view::npos) {
-    return error(fmt::format("'{}' is no name of a message", short_name.substr(0, 40)));
+    return error(fmt::format("'{}' is not a message name", short_name.substr(0, 40)));
   }
   if (type_.find(name) != nullptr) return error(fmt::format("{} is defined twice", name));
   if (type_.messages.size() == kMostMessages) {
@@ -126,14 +126,15 @@ Status DefinitionParser::read_member(std::string_view line) {
   const size_t name_end = std::min(rest.find_first_of(" \t\r=#"), rest.size());
   const std::string_view name = rest.substr(0, name_end);
   if (!is_name(name)) {
-    return error(fmt::format("'{}' is no field: a type and a name are", line.substr(0, 60)));
+    return error(
+        fmt::format("'{}' is not a field: expected a type and a name", line.substr(0, 60)));
   }
   GLOAM_TRY(FieldType type, read_type(line.substr(0, type_end)));
   std::string_view value = without_spaces(rest.substr(name_end));
   if (!value.starts_with('=')) return add_field(std::move(type), name, value);
   value.remove_prefix(1);
   if (type.kind == FieldKind::kMessage || type.array != ArrayKind::kNone) {
-    return error(fmt::format("constant '{}' is of no primitive type", name));
+    return error(fmt::format("constant '{}' does not have a primitive type", name));
   }
   if (type.kind != FieldKind::kString) value = value.substr(0, value.find('#'));
   auto& constants = type_.messages.back().constants;
@@ -149,7 +150,7 @@ Status DefinitionParser::read_member(std::string_view line) {
 Status DefinitionParser::add_field(FieldType type, std::string_view name, std::string_view value) {
   std::vector<FieldDescription>& fields = type_.messages.back().fields;
   for (const FieldDescription& field : fields) {
-    if (field.name == name) return error(fmt::format("field '{}' is there twice", name));
+    if (field.name == name) return error(fmt::format("field '{}' is defined twice", name));
   }
   if (fields.size() == kMostFields) return error(fmt::format("more than {} fields", kMostFields));
   const bool is_text = type.kind == FieldKind::kString;
@@ -164,7 +165,8 @@ Result<size_t> DefinitionParser::read_size(std::string_view digits) const {
   const char* end = digits.data() + digits.size();
   const auto read = std::from_chars(digits.data(), end, size);
   if (read.ec != std::errc() || read.ptr != end || size == 0) {
-    return error(fmt::format("'{}' is no size: 1 to 4294967295 are", digits.substr(0, 20)));
+    return error(
+        fmt::format("'{}' is not an array size: expected 1 to 4294967295", digits.substr(0, 20)));
   }
   return size_t{size};
 }
@@ -201,11 +203,11 @@ Result<FieldType> DefinitionParser::read_type(std::string_view text) const {
                  .loc = {file_, line_}};
   }
   if (element == "time" || element == "duration") {
-    return error(fmt::format("type {} is one of ROS 1", element),
-                 "convert the log to ROS 2, rosbags-convert does it");
+    return error(fmt::format("type {} is a ROS 1 type", element),
+                 "convert the log to ROS 2, for example with rosbags-convert");
   }
   type.message = full_name(element, package_);
-  if (type.message.empty()) return error(fmt::format("'{}' is no type", text.substr(0, 60)));
+  if (type.message.empty()) return error(fmt::format("'{}' is not a type", text.substr(0, 60)));
   return type;
 }
 
@@ -213,12 +215,12 @@ Result<FieldType> DefinitionParser::read_type(std::string_view text) const {
 
 Result<TypeDescription> parse_ros2msg(std::string_view text, std::string_view name) {
   if (text.size() > kMostText) {
-    return Error{.message = fmt::format("a definition of more than {} bytes", kMostText),
+    return Error{.message = fmt::format("the definition has more than {} bytes", kMostText),
                  .loc = {std::string(name.substr(0, kLongestName))}};
   }
   if (!is_name(name, "/") || name.find('/') == std::string_view::npos) {
-    return Error{.message = fmt::format("'{}' is no name of a message", name.substr(0, 60)),
-                 .hint = "names are like sensor_msgs/msg/Imu"};
+    return Error{.message = fmt::format("'{}' is not a message name", name.substr(0, 60)),
+                 .hint = "use a name such as sensor_msgs/msg/Imu"};
   }
   DefinitionParser parser(full_name(name, ""));
   while (!text.empty()) {

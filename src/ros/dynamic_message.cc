@@ -27,8 +27,8 @@ Result<PathStep> parse_step(std::string_view step) {
   const char* end = step.data() + step.size();
   const auto read = std::from_chars(step.data() + bracket + 1, end, parsed.index);
   if (read.ec != std::errc() || read.ptr + 1 != end || *read.ptr != ']') {
-    return Error{.message = fmt::format("'{}' is no field of a path", step.substr(0, 60)),
-                 .hint = "paths are like transforms[2].child_frame_id"};
+    return Error{.message = fmt::format("'{}' is not a field of a path", step.substr(0, 60)),
+                 .hint = "use a path such as transforms[2].child_frame_id"};
   }
   parsed.has_index = true;
   return parsed;
@@ -44,7 +44,7 @@ Error no_field(std::string_view name, const std::vector<SchemaField>& fields) {
 Error other_kind(std::string_view path, const SchemaField& field, std::string_view wanted) {
   const bool is_message = field.type.kind == FieldKind::kMessage;
   return {.message = fmt::format(
-              "'{}' is {}{}, not {}", path,
+              "'{}' has type {}{}, expected {}", path,
               is_message ? field.type.message : std::string(field_kind_name(field.type.kind)),
               field.type.array == ArrayKind::kNone ? "" : "[]", wanted)};
 }
@@ -56,7 +56,7 @@ Result<DynamicMessage> DynamicMessage::open(const MessageSchema& schema,
   CdrReader reader(bytes);
   const SchemaField whole{.least_size = 1};
   if (skip_elements(schema, &reader, whole, 1) && reader.left() > kMostPadding) {
-    reader.fail("the message has ended, but not its bytes");
+    reader.fail("there are unread bytes after the end of the message");
   }
   if (!reader.ok()) {
     Error error = reader.error();
@@ -88,12 +88,12 @@ Result<DynamicMessage::Place> DynamicMessage::find(std::string_view path) const 
     place.field = fields[i];
     if (!step.has_index) continue;
     if (place.field.type.array == ArrayKind::kNone) {
-      return Error{.message = fmt::format("'{}' is no array", step.name)};
+      return Error{.message = fmt::format("'{}' is not an array", step.name)};
     }
     size_t count = 0;
     if (!read_length(&reader, place.field, &count)) return reader.error();
     if (step.index >= count) {
-      return Error{.message = fmt::format("'{}' has {} elements, so none has the index {}",
+      return Error{.message = fmt::format("'{}' has {} elements, so index {} is out of range",
                                           step.name, count, step.index)};
     }
     if (!skip_elements(*schema_, &reader, place.field, step.index)) return reader.error();
@@ -153,7 +153,7 @@ Result<std::vector<double>> DynamicMessage::numbers(std::string_view path) const
   std::vector<double> numbers;
   if (!collect_numbers(*schema_, &place.reader, place.field, &numbers)) {
     if (!place.reader.ok()) return place.reader.error();
-    return other_kind(path, place.field, "of numbers alone");
+    return other_kind(path, place.field, "only numbers");
   }
   return numbers;
 }

@@ -12,7 +12,7 @@ bool read_length(CdrReader* reader, const MessageSchema::Field& field, size_t* c
   if (!reader->read_count(count, field.least_size)) return false;
   if (field.type.array == ArrayKind::kBounded && *count > field.type.array_size) {
     return reader->fail(
-        fmt::format("{} elements, where {} are allowed", *count, field.type.array_size));
+        fmt::format("{} elements exceed the bound of {}", *count, field.type.array_size));
   }
   return true;
 }
@@ -56,7 +56,7 @@ bool collect_numbers(const MessageSchema& schema, CdrReader* reader,
   if (field.type.kind == FieldKind::kString || !read_length(reader, field, &count)) return false;
   if (field.type.kind != FieldKind::kMessage) {
     return with_primitive(field.type.kind, [&]<class T>(std::type_identity<T>) {
-      if (count > reader->left() / sizeof(T)) return reader->fail("the message ends too soon");
+      if (count > reader->left() / sizeof(T)) return reader->fail("the message is truncated");
       for (size_t i = 0; i < count; ++i) {
         T value = {};
         if (!reader->read(&value)) return false;

@@ -22,19 +22,19 @@ Status check_numbers(const std::vector<double>& numbers, std::string_view what, 
   if (numbers.size() != joints && (is_required || !numbers.empty()))
     return bad(fmt::format("a point has {} {} for {} joints", numbers.size(), what, joints));
   if (!std::ranges::all_of(numbers, [](double v) { return std::isfinite(v); }))
-    return bad(fmt::format("one of the {} of a point is not finite", what));
+    return bad(fmt::format("the {} of a point are not finite", what));
   return {};
 }
 
 }  // namespace
 
 Status check_joint_names(std::span<const std::string> names) {
-  if (names.empty()) return bad("no joints are named");
+  if (names.empty()) return bad("the list of joints is empty");
   std::set<std::string_view> seen;
   for (const std::string& name : names) {
     if (name.empty()) return bad("a joint has an empty name");
     if (!seen.insert(name).second)
-      return bad(fmt::format("joint '{}' is there twice", name), "name each joint once");
+      return bad(fmt::format("joint '{}' is listed twice", name), "list each joint once");
   }
   return {};
 }

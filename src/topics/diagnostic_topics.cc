@@ -76,13 +76,14 @@ Status encode_performance(const TopicInfo& topic, TopicInstant& at, MessageBytes
   const SimulationStats stats = at.performance();
   std::string trouble;
   if (stats.realtime_factor > 0 && stats.realtime_factor < kLeastRealtime)
-    trouble = fmt::format("runs at {:.2f} of real time", stats.realtime_factor);
+    trouble = fmt::format("runs at {:.2f} times real time", stats.realtime_factor);
   DiagnosticArray message;
   message.header = ros_header(at.snapshot().time(), topic.frame_id);
   message.status = {
       status_of("gloam: speed", std::move(trouble)),
-      status_of("gloam: streams",
-                stats.dropped_snapshots > 0 ? "readers are too slow: instants were dropped" : "")};
+      status_of("gloam: streams", stats.dropped_snapshots > 0
+                                      ? "subscribers are too slow: instants were dropped"
+                                      : "")};
   message.status[0].values = {{"pace", to_string(stats.pace)},
                               {"realtime_factor", fmt::format("{:.4g}", stats.realtime_factor)},
                               {"step", fmt::format("{}", stats.step)}};
@@ -106,7 +107,7 @@ void add_diagnostic_topics(const TopicSource&, TopicTable* table) {
                       std::move(encode)});
   };
   add("/diagnostics", "physics", encode_physics);
-  add("/diagnostics/performance", "speed by the wall clock, lost messages, cost of each sensor",
+  add("/diagnostics/performance", "speed in wall time, lost messages, cost of each sensor",
       encode_performance);
   table->back().info.is_logged = false;
 }

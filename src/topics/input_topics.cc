@@ -35,7 +35,7 @@ struct RobotJoints {
     const auto found = std::find(names.begin(), names.end(), name);
     if (found != names.end()) return Joint{ids[static_cast<size_t>(found - names.begin())], world};
     return Error{ErrorKind::kInput,
-                 fmt::format("robot '{}' has no hinge or slide '{}'", robot, name),
+                 fmt::format("robot '{}' has no hinge or slide joint '{}'", robot, name),
                  {},
                  suggest_name(name, names)};
   }
@@ -73,7 +73,7 @@ InputDecoder stamped_velocity(Robot robot) {
 
 Status check_lengths(const std::string& what, size_t names, size_t values) {
   if (names == values) return {};
-  return Error{ErrorKind::kInput, fmt::format("{}: {} names and {} numbers", what, names, values)};
+  return Error{ErrorKind::kInput, fmt::format("{}: {} names, but {} numbers", what, names, values)};
 }
 
 InputDecoder joint_command(RobotJoints joints) {
@@ -132,7 +132,7 @@ InputDecoder joint_trajectory(RobotJoints joints) {
     GLOAM_TRY_STATUS(check_joint_names(way.joint_names));
     GLOAM_TRY_STATUS(check_points(way));
     if (way.points.back().time_from_start.sec >= kLongestTrajectory)
-      return Error{ErrorKind::kInput, "joint_trajectory: it is longer than 60 s"};
+      return Error{ErrorKind::kInput, "joint_trajectory: the trajectory is longer than 60 s"};
     std::vector<Command> commands;
     for (size_t i = 0; i < way.joint_names.size(); ++i) {
       GLOAM_TRY(const Joint joint, joints.find(way.joint_names[i]));
@@ -152,9 +152,9 @@ InputDecoder controls(Robot robot) {
 Status check_frame(const std_msgs::Header& header) {
   if (header.frame_id.empty() || header.frame_id == kWorldFrameId) return {};
   return Error{ErrorKind::kInput,
-               fmt::format("frame '{}' is not understood here", header.frame_id),
+               fmt::format("frame '{}' is not supported", header.frame_id),
                {},
-               "give it in frame 'world'"};
+               "use frame 'world'"};
 }
 
 InputDecoder mocap_pose(Body body) {
@@ -183,7 +183,7 @@ InputDecoder initial_pose(Joint root) {
     const double norm =
         X_WB.q.w * X_WB.q.w + X_WB.q.x * X_WB.q.x + X_WB.q.y * X_WB.q.y + X_WB.q.z * X_WB.q.z;
     if (!(norm > 0.5 && norm < 2))
-      return Error{ErrorKind::kInput, "initialpose: its orientation is no unit quaternion"};
+      return Error{ErrorKind::kInput, "initialpose: the orientation is not a unit quaternion"};
     return std::vector{
         now(SetJointState{root,
                           {X_WB.p.x, X_WB.p.y, X_WB.p.z, X_WB.q.w, X_WB.q.x, X_WB.q.y, X_WB.q.z},

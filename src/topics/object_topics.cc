@@ -147,7 +147,7 @@ void add_object_topics(const TopicSource& world, TopicTable* table) {
   };
   std::vector<ObjectBox> boxes;
   for (const int body : object_bodies(*world)) boxes.push_back(box_of(*world->model, body));
-  if (!boxes.empty()) add("/objects", "bodies that float", objects(std::move(boxes)));
+  if (!boxes.empty()) add("/objects", "floating bodies", objects(std::move(boxes)));
   if (!world->agents.empty()) add("/agents", "people and vehicles", encode_agents);
 }
 

@@ -88,9 +88,9 @@ class Namer {
     if (next != space)
       notes_->push_back({ErrorKind::kInput,
                          fmt::format("topics of {} are named '{}', not '{}': {}", element.source,
-                                     next, space, "that name is taken"),
+                                     next, space, "that name is in use"),
                          {},
-                         "a [[topic]] with `rename` gives others"});
+                         "use a [[topic]] with `rename` to choose other names"});
     for (Topic* topic : element.topics) {
       topic->info.name = renamed(topic->info.name, space, next);
       taken_.insert(topic->info.name);

@@ -134,7 +134,7 @@ Result<MessageInfo> message_info(std::string_view type) {
   std::vector<std::string> names;
   for (const MessageType& known : message_types()) names.push_back(known.name);
   return Error{ErrorKind::kInput,
-               fmt::format("Gloam has no message '{}'", type),
+               fmt::format("unknown message type '{}'", type),
                {},
                suggest_name(std::string(type), names)};
 }

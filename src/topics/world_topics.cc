@@ -116,7 +116,7 @@ void add_world_topics(const TopicSource& world, TopicTable* table) {
                      .type = type_name<tf2_msgs::TFMessage>(),
                      .frame_id = kWorldFrameId,
                      .qos = kLatchedQos,
-                     .source = "bodies that keep their place, sensors"},
+                     .source = "static bodies, sensors"},
                     {},
                     {},
                     static_frames(world)});
@@ -129,7 +129,7 @@ void add_world_topics(const TopicSource& world, TopicTable* table) {
                        .frame_id = kWorldFrameId,
                        .rate = kStateRate,
                        .qos = {.depth = 100},
-                       .source = "bodies that move"},
+                       .source = "moving bodies"},
                       {},
                       {},
                       InstantEncoder(encode_moving_frames)});
