@@ -21,9 +21,9 @@ Result<std::string> token_of_environment() {
   if (token.size() >= kShortestToken && std::none_of(token.begin(), token.end(), is_odd))
     return token;
   return Error{ErrorKind::kUsage,
-               "GLOAM_TOKEN must have 16 characters or more, no spaces",
+               "GLOAM_TOKEN must have at least 16 characters and no spaces",
                {},
-               "unset it: a token is made at each start"};
+               "unset it to generate a new token at each start"};
 }
 
 class BridgesOfRun final : public Bridges {

@@ -215,7 +215,7 @@ void Driver::do_message(int64_t, const SpeedMessage& message) {
 
 void Driver::do_message(int64_t client, const SeekMessage& message) {
   if (options_.player == nullptr)
-    return reply_(client, notice_message("This is no log: its time cannot be gone about in."));
+    return reply_(client, notice_message("Seeking is only possible in the replay of a log."));
   const double time = std::min(message.time, options_.player->end());
   tell_failure(client, options_.player->seek(time));
   picture_is_old_ = true;
@@ -231,7 +231,7 @@ void Driver::do_message(int64_t client, const ResetMessage&) {
 void Driver::do_message(int64_t client, const CameraMessage& message) {
   if (message.name == camera_ && stream_) return;
   if (std::find(cameras_.begin(), cameras_.end(), message.name) == cameras_.end())
-    return reply_(client, notice_message("There is no camera named '" + message.name + "'."));
+    return reply_(client, notice_message("There is no camera '" + message.name + "'."));
   // The free camera begins where its user was looking from: the model may have walls.
   if (const auto frame = publisher_.newest(); frame && camera_ != kFreeCamera)
     free_start_ = frame->X_WC;
@@ -277,7 +277,7 @@ void Driver::do_message(int64_t client, const DragStartMessage& message) {
   const auto hit = simulation_.pick(*frame, message.u, message.v);
   if (!hit.ok()) return reply_(client, notice_message("There is nothing to pull here."));
   if (hit->body.id <= 0)
-    return reply_(client, notice_message("This belongs to the world and does not move."));
+    return reply_(client, notice_message("This is part of the world and cannot move."));
   drag_ = Drag{.client = client,
                .body = hit->body,
                .point_B = hit->point_B,

@@ -29,14 +29,14 @@ class Reader {
   }
   int integer(const char* key, int low, int high) {
     const double value = number(key, low, high);
-    if (value != std::floor(value)) fail(key, "must be a whole number");
+    if (value != std::floor(value)) fail(key, "must be an integer");
     return static_cast<int>(value);
   }
   std::string text(const char* key, size_t max_size) {
     ++read_;
     const auto found = object_.find(key);
     if (found == object_.end() || !found->is_string()) {
-      fail(key, "must be a text");
+      fail(key, "must be a string");
       return {};
     }
     auto value = found->get<std::string>();
@@ -47,7 +47,7 @@ class Reader {
   Result<ControlMessage> finish(ControlMessage message) const {
     if (!problem_.empty()) return wrong(problem_);
     if (object_.size() != read_ + 1)
-      return wrong("the message has a key that its type does not know");
+      return wrong("the message has a key that is unknown for its type");
     return message;
   }
 
@@ -94,7 +94,7 @@ Result<ControlMessage> parse_message(std::string_view text) {
   if (object.is_discarded()) return wrong("the message is not JSON");
   const auto found = object.is_object() ? object.find("type") : object.end();
   if (found == object.end() || !found->is_string())
-    return wrong("the message must be an object with a text 'type'");
+    return wrong("the message must be an object with a string 'type'");
 
   Reader reader(object);
   const auto& type = found->get_ref<const std::string&>();
@@ -116,7 +116,7 @@ Result<ControlMessage> parse_message(std::string_view text) {
   if (type == "camera") return reader.finish(CameraMessage{reader.text("name", kMaxName)});
   if (type == "claim") return reader.finish(ClaimMessage{});
   if (type == "release") return reader.finish(ReleaseMessage{});
-  return wrong("the message has a type that this server does not know");
+  return wrong("the message has an unknown type");
 }
 
 std::string hello_message(int64_t client, const std::vector<std::string>& cameras, double step_rate,

@@ -23,17 +23,18 @@ Error usage(std::string message, std::string hint = {}) {
 
 Status check(const ViewOptions& options) {
   if (!web::is_loopback_name(options.host))
-    return usage("the view serves this machine only, and '" + options.host +
-                     "' is not one of its loopback names",
-                 "from another machine: ssh -L 8080:localhost:8080, then open the printed address");
+    return usage("the view is available only on this machine, and '" + options.host +
+                     "' is not a loopback name",
+                 "to view from another machine, run ssh -L 8080:localhost:8080 there and open the "
+                 "printed address");
   if (options.port < 0 || options.port > 65535)
-    return usage("port " + std::to_string(options.port) + " does not exist", "0 … 65535");
+    return usage("port " + std::to_string(options.port) + " does not exist", "use 0 … 65535");
   if (options.max_clients < 1 || options.max_clients > 1024)
     return usage("the number of clients must be 1 … 1024");
   if (!(options.rate >= 0.001 && options.rate <= 240))
-    return usage("the picture rate must be above 0 and at most 240 per second");
+    return usage("the image rate must be above 0 and at most 240 per second");
   if (options.width < 0 || options.height < 0)
-    return usage("the width and height of a picture cannot be negative");
+    return usage("the width and height of an image cannot be negative");
   return {};
 }
 
@@ -106,7 +107,7 @@ class ViewServer::Impl : public WebEvents {
       return web_.send(client, notice_message("You are watching. Take control first."));
     if (std::holds_alternative<ReleaseMessage>(*message)) return give_up_control();
     if (!driver_.post(client, *message))
-      web_.send(client, notice_message("The simulation is busy; this was not carried out."));
+      web_.send(client, notice_message("The simulation is busy; the request was not executed."));
   }
 
  private:

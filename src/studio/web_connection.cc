@@ -77,8 +77,8 @@ void WebConnection::on_request(error_code error) {
   const web::RequestFacts facts = web::facts_of(request, shared_.port);
   const web::Verdict verdict = web::judge(facts, shared_.options.token, shared_.cookie_name);
   if (verdict.status != 200) return refuse(static_cast<unsigned>(verdict.status), verdict.reason);
-  if (!let_in()) return refuse(503, "This server has all the clients that it may have.");
-  if (!request_->is_done()) return refuse(413, "A request here has no body.");
+  if (!let_in()) return refuse(503, "The server has reached its limit on clients.");
+  if (!request_->is_done()) return refuse(413, "Requests to this server must not have a body.");
 
   const std::string_view path = web::target_path(facts.target);
   if (facts.websocket) {
@@ -178,7 +178,7 @@ void WebConnection::on_message(error_code error) {
   if (error) return end();
   if (!closing_) {
     if (!websocket_->got_text()) {
-      close(websocket::close_code::unknown_data, "Messages to the server are text.");
+      close(websocket::close_code::unknown_data, "Messages to the server must be text.");
     } else {
       const auto bytes = buffer_.cdata();
       shared_.events->on_text(client_, {static_cast<const char*>(bytes.data()), bytes.size()});

@@ -85,8 +85,9 @@ bool token_in_authorization(std::string_view authorization, std::string_view tok
 Result<std::string> make_token() {
   std::array<uint8_t, 24> bytes;
   if (getrandom(bytes.data(), bytes.size(), 0) != static_cast<ssize_t>(bytes.size())) {
-    return Error{.kind = ErrorKind::kIo,
-                 .message = "the operating system gave no random bytes for the access token"};
+    return Error{
+        .kind = ErrorKind::kIo,
+        .message = "cannot get random bytes for the access token from the operating system"};
   }
   std::string token;
   for (const uint8_t byte : bytes) {
@@ -143,9 +144,11 @@ bool is_websocket_key(std::string_view key) {
 std::string_view why_malformed(const RequestFacts& request) {
   if (request.hosts != 1) return "The request must have exactly one Host field.";
   if (!request.repeated.empty())
-    return "Host, Origin, Cookie, Authorization and the fields of a WebSocket may be there once.";
+    return "Host, Origin, Cookie, Authorization and the WebSocket headers may each appear only "
+           "once.";
   if (!request.websocket) return {};
-  if (request.websocket_version != "13") return "This server speaks version 13 of WebSocket.";
+  if (request.websocket_version != "13")
+    return "This server supports version 13 of the WebSocket protocol.";
   if (!is_websocket_key(request.websocket_key))
     return "Sec-WebSocket-Key must be 16 bytes in base64.";
   return {};
@@ -163,28 +166,29 @@ bool has_own_port(const RequestFacts& request) {
 Verdict judge(const RequestFacts& request, std::string_view token, std::string_view cookie_name) {
   if (const std::string_view why = why_malformed(request); !why.empty()) return {400, why};
   if (!is_loopback_name(host_name(request.host)))
-    return {403, "This server answers to loopback names only, such as 127.0.0.1 or localhost."};
+    return {403, "This server accepts only loopback host names, such as 127.0.0.1 or localhost."};
   if (!has_own_port(request))
-    return {403, "The port in Host is not this server's (a tunnel must keep it)."};
+    return {403, "The port in Host is not the port of this server (a tunnel must keep the port)."};
   if (!request.origin.empty()) {
     constexpr std::string_view kScheme = "http://";
     if (request.origin.substr(0, kScheme.size()) != kScheme ||
         !equal_ignoring_case(request.origin.substr(kScheme.size()), request.host))
-      return {403, "Another site's page may not use this server."};
+      return {403, "Pages of other sites may not use this server."};
   }
   if (request.method != "GET" && request.method != "HEAD")
-    return {405, "This server knows GET and HEAD only."};
+    return {405, "This server supports only GET and HEAD."};
 
   const bool page = target_path(request.target) == "/" && !request.websocket;
   if (page && token_in_query(request.target, token)) return {.set_cookie = true};
   // A link on another site may open the page's address, but nothing else crosses sites.
   if (!request.sec_fetch_site.empty() && request.sec_fetch_site != "same-origin" &&
       request.sec_fetch_site != "none")
-    return {403, "Another site's page may not use this server."};
+    return {403, "Pages of other sites may not use this server."};
   if (token_in_cookie(request.cookie, cookie_name, token) ||
       token_in_authorization(request.authorization, token))
     return {};
-  return {401, "Open the address that Gloam printed in the terminal: it carries the access token."};
+  return {401,
+          "Open the address that Gloam printed in the terminal: it contains the access token."};
 }
 
 std::string cookie_name(int port) { return "gloam_view_" + std::to_string(port); }

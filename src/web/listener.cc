@@ -18,8 +18,8 @@ Error listen_error(const error_code& error, int port, const std::string& hint) {
     return {.kind = ErrorKind::kIo, .message = "port " + number + " is in use", .hint = hint};
   if (error == net::error::access_denied)
     return {.kind = ErrorKind::kIo,
-            .message = "this user may not listen on port " + number,
-            .hint = "ports from 1024 are free to all: 8080, for example"};
+            .message = "permission denied to listen on port " + number,
+            .hint = "use a port of 1024 or above, for example 8080"};
   return {.kind = ErrorKind::kIo,
           .message = "cannot listen on port " + number + ": " + error.message()};
 }
@@ -33,7 +33,8 @@ Status Listener::listen(const std::string& host, int port, const std::string& hi
                            ? net::ip::make_address(v6 ? "::1" : "127.0.0.1", error)
                            : net::ip::make_address(host, error);
   if (error)
-    return Error{ErrorKind::kUsage, "'" + host + "' is no address", {}, "127.0.0.1, for example"};
+    return Error{
+        ErrorKind::kUsage, "'" + host + "' is not an IP address", {}, "use 127.0.0.1, for example"};
   const tcp::endpoint endpoint(address, static_cast<unsigned short>(port));
   acceptor_.open(endpoint.protocol(), error);
   if (!error) acceptor_.set_option(net::socket_base::reuse_address(true), error);

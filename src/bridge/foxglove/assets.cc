@@ -22,7 +22,7 @@ Result<std::vector<uint8_t>> read_whole(const fs::path& file, uintmax_t most) {
   std::error_code error;
   const auto size = fs::is_regular_file(file, error) ? fs::file_size(file, error) : 0;
   if (error || size == 0 || size > most)
-    return Error{ErrorKind::kIo, "'" + file.filename().string() + "' is not there or too large"};
+    return Error{ErrorKind::kIo, "'" + file.filename().string() + "' is missing or too large"};
   std::vector<uint8_t> bytes(size);
   std::ifstream stream(file, std::ios::binary);
   if (!stream.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(size)))
@@ -103,7 +103,7 @@ Result<std::shared_ptr<const std::vector<uint8_t>>> Assets::fetch(const std::str
   follow();
   const auto found = files_.find(uri);
   if (found == files_.end())
-    return Error{ErrorKind::kInput, "no robot's description names '" + uri + "'"};
+    return Error{ErrorKind::kInput, "no robot description refers to '" + uri + "'"};
   GLOAM_TRY(auto bytes, read_whole(found->second, kLargestAsset));
   return std::make_shared<const std::vector<uint8_t>>(std::move(bytes));
 }

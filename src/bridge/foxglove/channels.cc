@@ -157,13 +157,12 @@ Status Channels::add_reader(const ClientPtr& client, const SubscribeMessage::Ite
   if (!channel)
     return Error{ErrorKind::kInput, "there is no channel " + std::to_string(item.channel)};
   if (subscriptions.contains(item.id))
-    return Error{ErrorKind::kInput,
-                 "subscription " + std::to_string(item.id) + " is there already"};
+    return Error{ErrorKind::kInput, "subscription " + std::to_string(item.id) + " already exists"};
   const auto is_same = [&](const auto& subscription) {
     return subscription.second == item.channel;
   };
   if (std::ranges::any_of(subscriptions, is_same))
-    return Error{ErrorKind::kInput, "'" + channel->info.topic + "' is subscribed to already"};
+    return Error{ErrorKind::kInput, "'" + channel->info.topic + "' already has a subscription"};
   subscriptions[item.id] = item.channel;
   std::unique_ptr<Feed>& feed = feeds_[channel->feed];
   if (feed == nullptr) feed = std::make_unique<Feed>();

@@ -77,12 +77,12 @@ class FieldReader {
     } else if (value.is_number_unsigned() && value.get<uint64_t>() <= most) {
       return value.get<uint64_t>();
     }
-    fail(key, "must be a whole number of its range");
+    fail(key, "must be an integer within its range");
     return 0;
   }
   std::string as_text(const json& value, const char* key) {
     if (!value.is_string()) {
-      fail(key, "must be text");
+      fail(key, "must be a string");
       return {};
     }
     auto text = value.get<std::string>();
@@ -94,7 +94,7 @@ class FieldReader {
     const json* list = find(key);
     if (list == nullptr) return;
     if (!list->is_array()) return fail(key, "must be a list");
-    if (list->size() > kMostItems) return fail(key, "is too long a list");
+    if (list->size() > kMostItems) return fail(key, "is too long");
     for (const json& item : *list) visit(item);
   }
 
@@ -181,7 +181,7 @@ Result<ClientMessage> parse_text_message(std::string_view text) {
   if (object.is_discarded()) return malformed("the message is not JSON");
   const auto found = object.is_object() ? object.find("op") : object.end();
   if (!object.is_object() || found == object.end() || !found->is_string())
-    return malformed("the message must be an object with a text 'op'");
+    return malformed("the message must be an object with a string 'op'");
   FieldReader reader(object);
   const auto& op = found->get_ref<const std::string&>();
   if (op == "subscribe") return read_subscribe(std::move(reader));
@@ -195,7 +195,7 @@ Result<ClientMessage> parse_text_message(std::string_view text) {
   if (op == "subscribeConnectionGraph") return ClientMessage(WatchGraphMessage{true});
   if (op == "unsubscribeConnectionGraph") return ClientMessage(WatchGraphMessage{false});
   if (op == "fetchAsset") return read_fetch_asset(std::move(reader));
-  return malformed("this server knows no op '" + op.substr(0, 64) + "'");
+  return malformed("unknown op '" + op.substr(0, 64) + "'");
 }
 
 Result<ClientMessage> parse_binary_message(std::span<const uint8_t> bytes) {
@@ -220,19 +220,19 @@ Result<ClientMessage> parse_binary_message(std::span<const uint8_t> bytes) {
     case 3: {
       PlaybackMessage playback;
       const auto command = reader.number<uint8_t>();
-      if (command > 1) return malformed("a playback command is 0 (play) or 1 (pause)");
+      if (command > 1) return malformed("the playback command must be 0 (play) or 1 (pause)");
       playback.play = command == 0;
       playback.speed = reader.number<float>();
       const bool seeks = reader.number<uint8_t>() != 0;
       const auto time = reader.number<uint64_t>();
       if (seeks) playback.seek = time;
       playback.request = reader.text();
-      if (!std::isfinite(playback.speed)) return malformed("the speed of playback is no number");
+      if (!std::isfinite(playback.speed)) return malformed("the playback speed is not finite");
       message = std::move(playback);
       break;
     }
     default:
-      return malformed("this server knows no binary opcode " + std::to_string(opcode));
+      return malformed("unknown binary opcode " + std::to_string(opcode));
   }
   if (!reader.ok()) return malformed("the binary message is too short");
   return message;

@@ -63,7 +63,7 @@ void Connection::on_request(error_code error) {
   // Watchers without the token cannot keep those out who have it.
   const int alike = admission.may_control ? state_.clients - state_.watchers : state_.watchers;
   if (alike >= state_.options.max_clients)
-    return refuse(503, "This server has all the clients that it may have.");
+    return refuse(503, "The server has reached its limit on clients.");
   become_websocket(admission);
 }
 

@@ -8,9 +8,9 @@ namespace gloam::bridge::foxglove {
 namespace {
 
 constexpr const char* kNoControl =
-    "you are watching: to change something, connect by the address with the token that Gloam "
-    "printed";
-constexpr const char* kBusy = "the simulation is busy; this was not carried out";
+    "this connection can only watch; to make changes, connect to the printed address that contains "
+    "the token";
+constexpr const char* kBusy = "the simulation is busy; the request was not executed";
 
 /// Whether a message only asks to be told something.
 bool only_watches(const ClientMessage& message) {
@@ -98,7 +98,7 @@ void FoxgloveBridge::obey(const ClientPtr& client, const CallMessage& message) {
 }
 
 void FoxgloveBridge::obey(const ClientPtr& client, const PlaybackMessage& message) {
-  if (!playback_) return refuse_request(client, counters_, "no log is played");
+  if (!playback_) return refuse_request(client, counters_, "no log is being replayed");
   // A slider that is dragged counts by its last place alone.
   do_later(operating_, client, [this, client, message] { play(client, message); }, kPlaybackKey);
 }

@@ -5,25 +5,29 @@ namespace gloam::bridge::foxglove {
 Admission admit(const web::RequestFacts& request, std::string_view protocols,
                 std::string_view token, bool loopback_only) {
   if (const std::string_view why = web::why_malformed(request); !why.empty()) return {400, why, {}};
-  if (request.method != "GET") return {405, "This server knows GET only.", {}};
+  if (request.method != "GET") return {405, "This server supports only GET.", {}};
   const bool has_token = web::carries_token(request, token);
   if (!has_token) {
     // A page whose name was rebound to this machine has its own name in Host.
     if (!web::is_loopback_name(web::host_name(request.host)))
-      return {403, "Without the token this server answers to loopback names only.", {}};
+      return {403, "Without the token this server accepts only loopback host names.", {}};
     if (!web::has_own_port(request))
-      return {403, "The port in Host is not this server's (a tunnel must keep it).", {}};
+      return {403,
+              "The port in Host is not the port of this server (a tunnel must keep the port).",
+              {}};
     if (!request.origin.empty())
-      return {403, "A page needs the address that Gloam printed, with its token.", {}};
+      return {403, "A web page must use the address that Gloam printed, including the token.", {}};
     if (!loopback_only)
-      return {401, "Beyond this machine the address needs the token that Gloam printed.", {}};
+      return {
+          401, "Connections from other machines must include the token that Gloam printed.", {}};
   }
   if (!request.websocket)
-    return {426, "This is a WebSocket for Foxglove: open a connection to it there.", {}};
+    return {426, "This is a WebSocket for Foxglove. Open a connection to it in Foxglove.", {}};
   const auto protocol = choose_protocol(protocols);
   if (!protocol)
-    return {
-        400, "This server speaks foxglove.sdk.v1.1, foxglove.sdk.v1, foxglove.websocket.v1.", {}};
+    return {400,
+            "This server supports foxglove.sdk.v1.1, foxglove.sdk.v1 and foxglove.websocket.v1.",
+            {}};
   return {101, {}, *protocol, has_token};
 }
 

@@ -74,7 +74,7 @@ class JsonEncoder {
   }
 
   Status put_string(const Field& field, const json& value) {
-    if (!value.is_string()) return wrong("must be text");
+    if (!value.is_string()) return wrong("must be a string");
     const auto& text = value.get_ref<const std::string&>();
     if (field.type.string_bound > 0 && text.size() > field.type.string_bound)
       return wrong("is too long");
@@ -98,7 +98,7 @@ class JsonEncoder {
                  std::in_range<T>(value.get<int64_t>())) {
         writer_.write(static_cast<T>(value.get<int64_t>()));
       } else {
-        return wrong("must be a whole number of its range");
+        return wrong("must be an integer within the range of its type");
       }
     }
     return {};

@@ -22,17 +22,17 @@ Parameters::Parameters(Operator& operations, Counters& counters)
   Simulation& simulation = operations.simulation();
   parameters_["paused"] = {"", [&simulation] { return json(simulation.paused()); },
                            [&operations](const json& value) -> Status {
-                             if (!value.is_boolean()) return bad_value("is true or false");
+                             if (!value.is_boolean()) return bad_value("must be true or false");
                              return value.get<bool>() ? operations.pause() : operations.play();
                            }};
   parameters_["speed"] = {"float64", [&operations] { return json(operations.speed().value_or(0)); },
                           [&operations](const json& value) -> Status {
-                            if (!value.is_number()) return bad_value("is a number");
+                            if (!value.is_number()) return bad_value("must be a number");
                             return operations.set_speed(value.get<double>());
                           }};
   parameters_["pace"] = {"", [&operations] { return json(to_string(operations.pace())); },
                          [&operations](const json& value) -> Status {
-                           if (!value.is_string()) return bad_value("is a text");
+                           if (!value.is_string()) return bad_value("must be a string");
                            return operations.set_pace(value.get<std::string>());
                          }};
   parameters_["scene"] = {
@@ -62,7 +62,7 @@ void Parameters::add_live_fields() {
     const auto get = [this, id] { return json(field(live_field_array(id))); };
     const auto set = [this, &simulation, id](const json& value) -> Status {
       const size_t size = field(live_field_array(id)).size();
-      const std::string what = "is an array of " + std::to_string(size) + " numbers";
+      const std::string what = "must be an array of " + std::to_string(size) + " numbers";
       if (!value.is_array() || value.size() != size) return bad_value(what);
       SetLiveField command{.field = id};
       for (const json& number : value) {
@@ -104,8 +104,8 @@ void Parameters::get(const ClientPtr& client, const GetParametersMessage& messag
 
 Status Parameters::set_one(const SetParametersMessage::Parameter& parameter) const {
   const auto found = parameters_.find(parameter.name);
-  if (found == parameters_.end()) return bad_value("is no parameter");
-  if (!found->second.set) return bad_value("can only be read");
+  if (found == parameters_.end()) return bad_value("is not a parameter");
+  if (!found->second.set) return bad_value("is read-only");
   return found->second.set(parameter.value);
 }
 

@@ -23,7 +23,7 @@ PlaybackState Playback::state() const {
 Result<PlaybackState> Playback::control(const PlaybackMessage& message) {
   if (!(message.speed >= kSlowestPlay && message.speed <= kFastestPlay))
     return Error{ErrorKind::kInput,
-                 "the speed of playback is 0.001 to 1000, not " + std::to_string(message.speed)};
+                 "the playback speed must be 0.001 to 1000, got " + std::to_string(message.speed)};
   Simulation& simulation = player_.simulation();
   if (message.speed != state().speed) GLOAM_TRY_STATUS(operations_.set_speed(message.speed));
   if (!message.play) simulation.pause();

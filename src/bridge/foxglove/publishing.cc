@@ -32,19 +32,20 @@ Result<Publishing::ClientChannel> Publishing::check(
       topics, [&](const TopicInfo& t) { return t.is_input && t.name == channel.topic; });
   if (topic == topics.end())
     return Error{ErrorKind::kInput,
-                 "nobody listens to '" + channel.topic + "'",
+                 "no input topic '" + channel.topic + "'",
                  {},
-                 "there are: " + names_of_inputs(topics)};
+                 "input topics: " + names_of_inputs(topics)};
   if (!channel.schema_name.empty() && full_type_name(channel.schema_name) != topic->type)
-    return Error{ErrorKind::kInput,
-                 "'" + channel.topic + "' takes " + topic->type + ", not " + channel.schema_name};
+    return Error{ErrorKind::kInput, "'" + channel.topic + "' has type " + topic->type + ", not " +
+                                        channel.schema_name};
   ClientChannel checked{channel.topic, nullptr};
   if (channel.encoding == "json") {
     GLOAM_TRY(const MessageInfo type, message_info(topic->type));
     GLOAM_TRY(auto schema, MessageSchema::parse(type.definition, topic->type));
     checked.json = std::make_shared<const MessageSchema>(std::move(schema));
   } else if (channel.encoding != "cdr") {
-    return Error{ErrorKind::kInput, "encodings are cdr and json, not '" + channel.encoding + "'"};
+    return Error{ErrorKind::kInput,
+                 "the encoding must be cdr or json, got '" + channel.encoding + "'"};
   }
   return checked;
 }
@@ -54,11 +55,11 @@ void Publishing::advertise(const ClientPtr& client, const AdvertiseMessage& mess
   for (const AdvertiseMessage::Channel& channel : message.channels) {
     if (channels.contains(channel.id)) {
       refuse_request(client, counters_,
-                     "channel " + std::to_string(channel.id) + " is advertised already");
+                     "channel " + std::to_string(channel.id) + " is already advertised");
       continue;
     }
     if (channels.size() >= kMostClientChannels)
-      return refuse_request(client, counters_, "these are too many channels");
+      return refuse_request(client, counters_, "too many channels");
     auto checked = check(channel);
     if (checked.ok())
       channels[channel.id] = *std::move(checked);

@@ -34,7 +34,7 @@ class Server::Impl {
   Status listen() {
     const ServerOptions& options = state_.options;
     GLOAM_TRY_STATUS(listener_.listen(options.host, options.port,
-                                      "try --port 0, or bridge.foxglove.port of the scene"));
+                                      "try --port 0, or set bridge.foxglove.port in the scene"));
     state_.port = port();
     listener_.accept([this](tcp::socket socket) { take(std::move(socket)); });
     tick();

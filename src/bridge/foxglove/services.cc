@@ -76,7 +76,8 @@ Result<Services::Bytes> Services::request_of(const CallMessage& message) const {
     return cdr_from_json(service.request, object);
   }
   if (message.encoding != "cdr")
-    return Error{ErrorKind::kInput, "encodings are cdr and json, not '" + message.encoding + "'"};
+    return Error{ErrorKind::kInput,
+                 "the encoding must be cdr or json, got '" + message.encoding + "'"};
   GLOAM_TRY_STATUS(json_from_cdr(service.request, message.data));  // damaged ones have no answer
   return Bytes(message.data.begin(), message.data.end());
 }

@@ -43,20 +43,20 @@ Result<Command> joint_command(const Entity& entity, const StateChange& change,
 }
 
 Error cannot_move(const Entity& entity) {
-  const std::string cause = entity.is_agent ? "goes its own way"
+  const std::string cause = entity.is_agent ? "moves by itself"
                             : entity.kind == EntityKind::kRobot
                                 ? "has a fixed base"
-                                : "is fixed to the world or hangs on joints";
+                                : "is fixed to the world or attached by joints";
   return Error{ErrorKind::kUnsupported,
-               fmt::format("entity '{}' cannot be put elsewhere: it {}", entity.name, cause),
+               fmt::format("the pose of entity '{}' cannot be set: it {}", entity.name, cause),
                {},
-               "only what floats freely and mocap bodies can be moved by hand"};
+               "only free-floating entities and mocap bodies can be moved"};
 }
 
 Status check_change(StateChange* change) {
   if (change->X_WE && (!is_finite(change->X_WE->p) || !normalize(&change->X_WE->q)))
     return Error{ErrorKind::kInput,
-                 "the pose has no unit quaternion, or numbers that are not finite"};
+                 "the pose is not finite, or its orientation is not a unit quaternion"};
   for (const auto* v : {&change->velocity, &change->angular_velocity})
     if (*v && !is_finite(**v)) return Error{ErrorKind::kInput, "the velocity is not finite"};
   return {};
@@ -164,7 +164,7 @@ Status Operator::set_entity_state(std::string_view name, const StateChange& aske
     return Error{ErrorKind::kUnsupported,
                  fmt::format("entity '{}' is a mocap body, which has no velocity", entity.name),
                  {},
-                 "set its pose alone"};
+                 "set only its pose"};
   } else {
     command.what = SetMocapPose{entity.body, *change.X_WE};
   }

@@ -62,7 +62,7 @@ std::string describe(EntityKind kind, bool is_agent) {
     case EntityKind::kHuman:
       return "person";
     case EntityKind::kDynamic:
-      return is_agent ? "vehicle" : "body that is moved from outside";
+      return is_agent ? "vehicle" : "externally controlled body";
     case EntityKind::kStatic:
       return "fixed body";
     default:
@@ -216,7 +216,7 @@ std::vector<NamedPose> list_named_poses(const World& world) {
     const Vec3 middle = {(region.low.x + region.high.x) / 2, (region.low.y + region.high.y) / 2,
                          region.low.z};
     poses.push_back({unique(region.name),
-                     "middle of the floor",
+                     "centre of the floor",
                      {"region", region.label},
                      {middle, {}},
                      {region.low, region.high},

@@ -71,14 +71,15 @@ Result<fs::path> path_of(const std::string& uri, const Scene& scene) {
   const auto refused = [&](const char* why, const char* hint = "") {
     return Error{ErrorKind::kInput, fmt::format("'{:.200}' {}", uri, why), {}, hint};
   };
-  if (uri.empty() || uri.size() > kLongestAddress) return refused("is no address of a file");
+  if (uri.empty() || uri.size() > kLongestAddress) return refused("is not a file address");
   std::string path = percent_decoded(uri);
   if (std::ranges::any_of(path, [](unsigned char c) { return c < 0x20; }))
-    return refused("holds a control character");
+    return refused("contains a control character");
   if (path.starts_with(kFileScheme)) {
     path = path.substr(kFileScheme.size());
     if (path.starts_with("localhost/")) path = path.substr(9);
-    if (!path.starts_with('/')) return refused("names another machine", "file:///FOLDER/FILE");
+    if (!path.starts_with('/'))
+      return refused("refers to another machine", "use file:///FOLDER/FILE");
     return fs::path(path);
   }
   if (path.starts_with(kOwnScheme)) {
@@ -91,9 +92,9 @@ Result<fs::path> path_of(const std::string& uri, const Scene& scene) {
     for (const auto& [name, folder] : scene.access.packages)
       if (name == path.substr(0, slash) && slash < path.size())
         return folder / path.substr(slash + 1);
-    return refused("is of a package that is not known here", "--package NAME=FOLDER tells of it");
+    return refused("refers to an unknown package", "define it with --package NAME=FOLDER");
   }
-  if (path.find("://") != std::string::npos) return refused("is no address that is read here");
+  if (path.find("://") != std::string::npos) return refused("is not a supported address");
   return fs::path(path).is_absolute() ? fs::path(path) : folder_of(scene) / path;
 }
 
@@ -149,7 +150,7 @@ Result<fs::path> ModelSource::resolve_folder(const std::string& uri, const Scene
   for (const fs::path& folder : allowed)
     if (is_below(path, folder)) return path.lexically_normal();
   return Error{ErrorKind::kInput,
-               fmt::format("'{:.200}' lies outside what clients may read", uri),
+               fmt::format("'{:.200}' is outside of the folders that clients may read", uri),
                {},
                "start Gloam with --root FOLDER"};
 }
@@ -157,13 +158,15 @@ Result<fs::path> ModelSource::resolve_folder(const std::string& uri, const Scene
 Result<fs::path> ModelSource::write(const std::string& text, const std::string& extension) {
   const std::lock_guard lock(mutex_);
   if (written_ + text.size() > kMostText)
-    return Error{ErrorKind::kUsage, "256 MiB of models came as text, no more are taken"};
+    return Error{ErrorKind::kUsage,
+                 "the limit of 256 MiB for models sent as text has been reached"};
   written_ += text.size();
   std::error_code code;
   if (folder_.empty()) {
     std::string name = (fs::temp_directory_path(code) / "gloam_spawned_XXXXXX").string();
     if (code || ::mkdtemp(name.data()) == nullptr)
-      return Error{ErrorKind::kIo, "there is no room for a client's model in the temporary folder"};
+      return Error{ErrorKind::kIo,
+                   "cannot create a folder for the client's model in the temporary folder"};
     folder_ = name;
   }
   const fs::path folder = folder_ / std::to_string(++count_);
@@ -174,8 +177,7 @@ Result<fs::path> ModelSource::write(const std::string& text, const std::string& 
   std::ofstream out(file, std::ios::binary);
   out.write(text.data(), static_cast<std::streamsize>(text.size()));
   out.close();
-  if (!out)
-    return Error{ErrorKind::kIo, fmt::format("the file '{}' cannot be written", file.string())};
+  if (!out) return Error{ErrorKind::kIo, fmt::format("cannot write the file '{}'", file.string())};
   return file;
 }
 
@@ -183,7 +185,8 @@ Result<SceneEntity> ModelSource::find(const SpawnRequest& request, const Scene& 
                                       const Pose& X_WE, std::string* model_name,
                                       SpawnFailure* failure) {
   if (request.uri.empty() && request.text.empty())
-    return refuse(failure, SpawnFailure::kNoResource, "there is neither an address nor a text");
+    return refuse(failure, SpawnFailure::kNoResource,
+                  "the request contains neither an address nor a text");
   if (const std::string kind = prop_kind_of(request.uri); !kind.empty()) {
     const std::vector<PropInfo> known = prop_kinds();
     std::vector<std::string> kinds;
@@ -206,19 +209,19 @@ Result<SceneEntity> ModelSource::find(const SpawnRequest& request, const Scene& 
       return SceneEntity(ObjectOptions{.file = *path, .X_WO = X_WE});
     if (!is_model_extension(extension))
       return refuse(failure, SpawnFailure::kUnsupportedFormat,
-                    fmt::format("'{}' files are not read", extension),
-                    "give MJCF, URDF, glTF, OBJ, STL or PLY");
+                    fmt::format("'{}' files are not supported", extension),
+                    "use MJCF, URDF, glTF, OBJ, STL or PLY");
     robot.file = *path;
     if (extension == ".toml") return SceneEntity(robot);
     std::ifstream in(*path, std::ios::binary);
     text.assign(std::istreambuf_iterator<char>(in), {});
   }
   if (text.size() > kLongestModel)
-    return refuse(failure, SpawnFailure::kUnsupportedFormat, "a model of more than 16 MiB");
+    return refuse(failure, SpawnFailure::kUnsupportedFormat, "the model is larger than 16 MiB");
   const ModelText kind = model_text_of(text);
   if (kind == ModelText::kSdf || kind == ModelText::kUsd)
-    return refuse(failure, SpawnFailure::kUnsupportedFormat, "SDF and USD are not read",
-                  "give MJCF or URDF");
+    return refuse(failure, SpawnFailure::kUnsupportedFormat, "SDF and USD are not supported",
+                  "use MJCF or URDF");
   if (kind == ModelText::kOther)
     return refuse(failure, SpawnFailure::kParse, "the text is neither MJCF nor URDF");
   const bool is_urdf = kind == ModelText::kUrdf;
@@ -227,7 +230,7 @@ Result<SceneEntity> ModelSource::find(const SpawnRequest& request, const Scene& 
   if (!robot.file.empty()) return SceneEntity(robot);
   if (!scene.access.root.empty())
     return refuse(failure, SpawnFailure::kOther,
-                  "models as text are not taken where --root limits the files that are read");
+                  "models cannot be sent as text when --root restricts file access");
   *failure = SpawnFailure::kOther;
   GLOAM_TRY(robot.file, write(text, is_urdf ? ".urdf" : ".xml"));
   return SceneEntity(robot);

@@ -33,7 +33,7 @@ Operator::Operator(Simulation& simulation)
 Operator::~Operator() = default;
 
 Status Operator::Private::need_world() const {
-  if (unloaded) return wrong_state("no world is loaded", "load one");
+  if (unloaded) return wrong_state("no world is loaded", "load a world first");
   return {};
 }
 
@@ -80,7 +80,7 @@ Status Operator::pause() {
 
 Status Operator::play() {
   GLOAM_TRY_STATUS(private_->need_world());
-  if (private_->stepping) return wrong_state("steps are being taken", "pause first");
+  if (private_->stepping) return wrong_state("the simulation is stepping", "pause it first");
   GLOAM_TRY_STATUS(simulation_.status());
   private_->rests = false;
   simulation_.resume();
@@ -99,14 +99,14 @@ Status Operator::step(int64_t count, const StepProgress& progress) {
   GLOAM_TRY_STATUS(p.need_world());
   if (count < 1) return Error{ErrorKind::kInput, "the number of steps must be 1 or more"};
   if (!simulation_.paused()) return wrong_state("the simulation is not paused", "pause it first");
-  if (p.stepping.exchange(true)) return wrong_state("another client takes steps");
+  if (p.stepping.exchange(true)) return wrong_state("another client is stepping the simulation");
   p.stop_stepping = false;
   p.rests = false;
   Status status;
   int64_t done = 0, chunk = 1;
   while (status.ok() && done < count) {
     if (p.stop_stepping) {
-      status = Error{ErrorKind::kInterrupted, "stopped before all steps were taken"};
+      status = Error{ErrorKind::kInterrupted, "cancelled before all steps were executed"};
       break;
     }
     const auto begin = Clock::now();
@@ -140,9 +140,9 @@ Status Operator::set_pace(std::string_view name) {
   GLOAM_TRY(const Pace pace, pace_named(name));
   if (pace == Pace::kLockstep)
     return Error{ErrorKind::kInput,
-                 "a live run has no pace 'lockstep'",
+                 "the pace 'lockstep' is not available in a live run",
                  {},
-                 "pause it and take steps, or one of: fast, realtime, sensors"};
+                 "pause the run and step it, or use one of: fast, realtime, sensors"};
   Private& p = *private_;
   p.is_fast = pace == Pace::kFast;
   if (!p.is_fast) p.waits_for_sensors = pace == Pace::kSensors;

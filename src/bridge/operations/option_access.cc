@@ -53,7 +53,7 @@ Status Operator::set_options(const std::vector<std::pair<std::string, std::strin
     if (is_fixed_option(path))
       return Error{
           ErrorKind::kUnsupported,
-          fmt::format("'{:.200}' stays as it is in a run: clients cannot change it", path)};
+          fmt::format("'{:.200}' is fixed during a run and cannot be changed by clients", path)};
     GLOAM_TRY_STATUS(set_option(scene, path, value));
   }
   GLOAM_TRY_STATUS(check_files(scene, p.source));

@@ -25,7 +25,8 @@ Result<std::string> log_name(const std::string& asked) {
         return std::isalnum(c) || c == '_' || c == '-' || c == '.';
       });
   if (!plain)
-    return Error{ErrorKind::kInput, "a log's name has letters, digits, '_', '-' and '.' alone"};
+    return Error{ErrorKind::kInput,
+                 "the name of a log may contain only letters, digits, '_', '-' and '.'"};
   return asked.ends_with(".mcap") ? asked : asked + ".mcap";
 }
 
@@ -45,7 +46,7 @@ Result<std::string> Operator::start_recording(const std::string& name, const Log
   GLOAM_TRY(const std::string file, log_name(name));
   const std::lock_guard lock(p.records_mutex);
   if (p.log != nullptr)
-    return Error{ErrorKind::kUsage, fmt::format("'{}' is being written", p.log_file)};
+    return Error{ErrorKind::kUsage, fmt::format("'{}' is already being recorded", p.log_file)};
   std::error_code code;
   fs::create_directories(p.recording_folder, code);
   LogRequest log = request;
@@ -60,7 +61,7 @@ Result<std::string> Operator::start_recording(const std::string& name, const Log
 Result<std::string> Operator::stop_recording() {
   Private& p = *private_;
   const std::lock_guard lock(p.records_mutex);
-  if (p.log == nullptr) return Error{ErrorKind::kUsage, "no log is being written"};
+  if (p.log == nullptr) return Error{ErrorKind::kUsage, "no log is being recorded"};
   const std::unique_ptr<LogStream> log = std::move(p.log);
   GLOAM_TRY_STATUS(log->finish());
   return p.log_file;
@@ -99,7 +100,7 @@ Result<std::shared_ptr<const CameraFrame>> Operator::picture(CameraRequest reque
   }
   if (waiting->frame != nullptr) return waiting->frame;
   if (waiting->error) return *waiting->error;
-  return Error{ErrorKind::kIo, "the picture took longer than two minutes"};
+  return Error{ErrorKind::kIo, "rendering the image took longer than two minutes"};
 }
 
 Result<int64_t> Operator::save_checkpoint() {
@@ -108,7 +109,10 @@ Result<int64_t> Operator::save_checkpoint() {
   GLOAM_TRY(Checkpoint checkpoint, simulation_.checkpoint());
   const std::lock_guard lock(p.records_mutex);
   if (p.kept.size() >= kMostCheckpoints)
-    return Error{ErrorKind::kUsage, "64 checkpoints are kept, no more are", {}, "forget some"};
+    return Error{ErrorKind::kUsage,
+                 "the limit of 64 checkpoints has been reached",
+                 {},
+                 "forget some of them"};
   p.kept.emplace(p.next_checkpoint, std::move(checkpoint));
   return p.next_checkpoint++;
 }

@@ -103,10 +103,10 @@ bool erase_named(std::string_view name, std::vector<Options>* all) {
 SpawnResult check_request(const SpawnRequest& request) {
   if (!request.name.empty() && !is_name(request.name))
     return failed(SpawnFailure::kNameInvalid,
-                  "a name has up to 128 letters, digits, '_', '-' and '.'");
+                  "a name may contain up to 128 letters, digits, '_', '-' and '.'");
   if (!request.ns.empty() && !is_namespace(request.ns))
     return failed(SpawnFailure::kNamespaceInvalid,
-                  fmt::format("'{:.100}' is no namespace of ROS", request.ns));
+                  fmt::format("'{:.100}' is not a valid ROS namespace", request.ns));
   return {};
 }
 
@@ -114,7 +114,7 @@ Result<Pose> find_pose(const SpawnRequest& request, Simulation& simulation) {
   Pose X_FE = request.X_FE;
   if (!is_finite(X_FE.p) || !normalize(&X_FE.q))
     return Error{ErrorKind::kInput,
-                 "the pose has no unit quaternion, or numbers that are not finite"};
+                 "the pose is not finite, or its orientation is not a unit quaternion"};
   if (request.frame.empty() || request.frame == "world") return X_FE;
   GLOAM_TRY(const Body body, simulation.world().find_body(request.frame));
   GLOAM_TRY(const Pose X_WF, simulation.body_pose(body));
@@ -134,7 +134,7 @@ SpawnResult choose_name(const SpawnRequest& request, const std::string& own,
   if (name.empty()) name = "entity";
   if (!is_taken(name)) return {.name = name};
   if (!request.allow_renaming)
-    return failed(SpawnFailure::kNameTaken, fmt::format("there is an entity '{}' already", name));
+    return failed(SpawnFailure::kNameTaken, fmt::format("an entity '{}' already exists", name));
   int number = 2;
   while (is_taken(fmt::format("{}_{}", name, number))) ++number;
   return {.name = fmt::format("{}_{}", name, number)};
@@ -178,11 +178,11 @@ SpawnResult Operator::spawn(const SpawnRequest& request) {
   if (!scene.bare_model.empty())
     return failed(SpawnFailure::kOther,
                   Error{ErrorKind::kUnsupported,
-                        "a bare model takes nothing more",
+                        "entities cannot be added to a bare model",
                         {},
                         "run a scene: [environment] or [[robot]] with this file"});
   if (p.spawned_count() >= kMostSpawned)
-    return failed(SpawnFailure::kOther, "1000 entities were spawned, no more are");
+    return failed(SpawnFailure::kOther, "the limit of 1000 spawned entities has been reached");
   SpawnFailure failure = SpawnFailure::kOther;
   std::string model_name;
   Result<SceneEntity> entity = p.source.find(request, scene, *X_WE, &model_name, &failure);
@@ -213,7 +213,7 @@ Status Operator::remove(std::string_view name) {
     return Error{ErrorKind::kUnsupported,
                  fmt::format("'{}' is part of a file or a generated place", name),
                  {},
-                 "robots, objects, props and agents of the scene can be removed"};
+                 "only robots, objects, props and agents of the scene can be removed"};
   std::string token(name);
   std::ranges::replace_if(token, [](unsigned char c) { return !std::isalnum(c); }, '_');
   std::erase_if(scene.topics, [&](const TopicOptions& o) {

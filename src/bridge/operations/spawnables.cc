@@ -29,7 +29,7 @@ void list_models(const fs::path& folder, std::vector<Spawnable>* list) {
   std::ranges::sort(files);
   for (const fs::path& file : files) {
     const bool is_mesh = is_mesh_extension(file.extension().string());
-    list->push_back({"file://" + file.string(), is_mesh ? "mesh, as a body" : "model", {}});
+    list->push_back({"file://" + file.string(), is_mesh ? "mesh, spawned as a body" : "model", {}});
   }
 }
 

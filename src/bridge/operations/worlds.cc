@@ -59,7 +59,7 @@ void list_scenes(const fs::path& folder, std::vector<WorldFile>* list) {
 WorldFile describe_world(const Scene& scene) {
   const fs::path file = scene.bare_model.empty() ? scene.file : scene.bare_model;
   std::error_code code;
-  if (file.empty() || !fs::exists(file, code)) return {scene.name, "", "made by a client"};
+  if (file.empty() || !fs::exists(file, code)) return {scene.name, "", "created by a client"};
   return {scene.name, address_of(file), scene.bare_model.empty() ? first_remark(file) : "model"};
 }
 
@@ -95,7 +95,8 @@ Result<Scene> Operator::Private::read_world(const std::string& uri, const std::s
   const auto named = std::ranges::find(known, uri, &WorldFile::name);
   const std::string address = named != known.end() ? named->uri : uri;
   const size_t slash = address.rfind('/');
-  if (address.empty()) return Error{ErrorKind::kInput, "there is neither an address nor a text"};
+  if (address.empty())
+    return Error{ErrorKind::kInput, "the request contains neither an address nor a text"};
   if (slash == std::string::npos && !address.ends_with(".toml")) {
     std::vector<std::string> names;
     for (const WorldFile& file : known) names.push_back(file.name);

@@ -65,7 +65,7 @@ class RawWriter final : public DdsWriter, private dds::DataWriterListener {
     publisher_ = &publisher;
     writer_ = publisher.create_datawriter(&topic, qos, this);
     if (writer_ == nullptr)
-      return Error{ErrorKind::kIo, "DDS refuses a writer of " + endpoint.topic};
+      return Error{ErrorKind::kIo, "DDS cannot create a writer for " + endpoint.topic};
     return {};
   }
   rtps::GUID_t guid() const { return writer_->guid(); }
@@ -132,7 +132,7 @@ class RawReader final : public DdsReader, private dds::DataReaderListener {
     subscriber_ = &subscriber;
     reader_ = subscriber.create_datareader(&topic, qos, this);
     if (reader_ == nullptr)
-      return Error{ErrorKind::kIo, "DDS refuses a reader of " + endpoint.topic};
+      return Error{ErrorKind::kIo, "DDS cannot create a reader for " + endpoint.topic};
     return {};
   }
   rtps::GUID_t guid() const { return reader_->guid(); }

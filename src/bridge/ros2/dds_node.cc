@@ -106,14 +106,14 @@ class DdsNode::Impl {
         static_cast<uint32_t>(options_.domain), participant_qos(options_));
     if (participant_ == nullptr)
       return Error{ErrorKind::kIo,
-                   "no DDS participant in domain " + std::to_string(options_.domain),
+                   "cannot create a DDS participant in domain " + std::to_string(options_.domain),
                    {},
-                   "over 100 programs in one domain? try another: bridge.ros2.domain, or "
-                   "ROS_DOMAIN_ID"};
+                   "there may be over 100 programs in this domain; select another one with "
+                   "bridge.ros2.domain or ROS_DOMAIN_ID"};
     publisher_ = participant_->create_publisher(dds::PUBLISHER_QOS_DEFAULT);
     subscriber_ = participant_->create_subscriber(dds::SUBSCRIBER_QOS_DEFAULT);
     if (publisher_ == nullptr || subscriber_ == nullptr)
-      return Error{ErrorKind::kIo, "DDS has no publisher or subscriber to give"};
+      return Error{ErrorKind::kIo, "DDS cannot create a publisher or subscriber"};
     return {};
   }
 
@@ -122,7 +122,7 @@ class DdsNode::Impl {
     if (!types_.contains(endpoint.type)) {
       dds::TypeSupport type(new RawType(endpoint.type));
       if (!succeeded(type.register_type(participant_)))
-        return Error{ErrorKind::kIo, "DDS refuses type " + endpoint.type};
+        return Error{ErrorKind::kIo, "DDS rejected type " + endpoint.type};
       types_.emplace(endpoint.type, type);
     }
     dds::Topic*& topic = topics_[endpoint.topic];
@@ -130,7 +130,7 @@ class DdsNode::Impl {
       topic = participant_->create_topic(endpoint.topic, endpoint.type, dds::TOPIC_QOS_DEFAULT);
     else if (topic->get_type_name() != endpoint.type)
       return Error{ErrorKind::kUsage, "topic " + endpoint.topic + " has two types"};
-    if (topic == nullptr) return Error{ErrorKind::kIo, "DDS refuses topic " + endpoint.topic};
+    if (topic == nullptr) return Error{ErrorKind::kIo, "DDS rejected topic " + endpoint.topic};
     return topic;
   }
 

@@ -5,8 +5,8 @@
 namespace gloam::bridge {
 
 Result<std::unique_ptr<Bridge>> start_ros2(const BridgeContext&, const Ros2Options& options) {
-  return Error{ErrorKind::kUsage, "this build has no bridge to ROS 2", options.loc,
-               "./gloam setup installs Fast DDS and builds the bridge"};
+  return Error{ErrorKind::kUsage, "this build does not include the ROS 2 bridge", options.loc,
+               "run ./gloam setup to install Fast DDS and build the bridge"};
 }
 
 }  // namespace gloam::bridge

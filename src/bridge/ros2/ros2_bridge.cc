@@ -34,7 +34,7 @@ Result<int> domain_of(const Ros2Options& options) {
   const auto [after, error] = std::from_chars(given, end, domain);
   if (error == std::errc() && after == end && domain >= 0 && domain <= kLargestDomain)
     return domain;
-  return Error{ErrorKind::kUsage, std::string("ROS_DOMAIN_ID '") + given + "' is not 0 … 232"};
+  return Error{ErrorKind::kUsage, std::string("ROS_DOMAIN_ID '") + given + "' must be 0 … 232"};
 }
 
 class Ros2Bridge final : public Bridge {
@@ -55,8 +55,8 @@ class Ros2Bridge final : public Bridge {
     GLOAM_TRY(domain_, domain_of(options_));
     const std::string ns = options_.ns.empty() ? "/" : options_.ns;
     if (ns[0] != '/' || ros_name(ns) != ns)
-      return Error{ErrorKind::kUsage, "'" + ns + "' is no namespace of ROS", options_.loc,
-                   "as '/sim': letters, digits and '_' between slashes"};
+      return Error{ErrorKind::kUsage, "'" + ns + "' is not a valid ROS namespace", options_.loc,
+                   "use letters, digits and '_' between slashes, as in '/sim'"};
     GLOAM_TRY(node_, DdsNode::create({.domain = domain_,
                                       .network = options_.network,
                                       .node = ros_name(options_.node),
@@ -76,7 +76,7 @@ class Ros2Bridge final : public Bridge {
   std::string name() const override { return "ros2"; }
   std::string address() const override {
     return "node '" + options_.node + "' in domain " + std::to_string(domain_) +
-           (options_.network ? ", all network cards" : ", this machine alone");
+           (options_.network ? ", all network interfaces" : ", this machine only");
   }
   BridgeStats stats() const override {
     BridgeStats stats;
@@ -131,7 +131,7 @@ class Ros2Bridge final : public Bridge {
       if (now - told > std::chrono::seconds(1)) {
         const std::string refusal = inlets_->take_refusal();
         if (!refusal.empty()) {
-          std::fprintf(stderr, "gloam: ros2: refused: %s\n", printable(refusal).c_str());
+          std::fprintf(stderr, "gloam: ros2: rejected: %s\n", printable(refusal).c_str());
           told = now;
         }
       }

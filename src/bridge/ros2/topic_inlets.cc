@@ -74,9 +74,9 @@ Status TopicInlets::obey_as_master(const std::string& robot, const std::string& 
   const bool is_free = master.lease == nullptr || now - master.last > kSilence;
   if (!is_free && master.writer != writer)
     return Error{ErrorKind::kUsage,
-                 "robot '" + robot + "' obeys another publisher",
+                 "robot '" + robot + "' is controlled by another publisher",
                  {},
-                 "it is free a second after that one's last message"};
+                 "it is released one second after the last message of that publisher"};
   if (master.lease == nullptr) {
     GLOAM_TRY(const Robot handle, simulation_.world().find_robot(robot));
     GLOAM_TRY(master.lease, simulation_.claim(handle));

@@ -19,18 +19,18 @@ Error file_error(const std::string& path, std::string_view what) {
   return {ErrorKind::kIo,
           fmt::format("'{}' {}", path, what),
           {},
-          "set XDG_RUNTIME_DIR to a folder of your own with mode 700"};
+          "set XDG_RUNTIME_DIR to a folder that you own and that has mode 700"};
 }
 
 // A folder that is ours alone; made if it is not there.
 Status own_folder(const std::string& path) {
   if (mkdir(path.c_str(), 0700) != 0 && errno != EEXIST)
-    return file_error(path, fmt::format("cannot be made: {}", std::strerror(errno)));
+    return file_error(path, fmt::format("cannot be created: {}", std::strerror(errno)));
   struct stat about = {};
   if (lstat(path.c_str(), &about) != 0 || !S_ISDIR(about.st_mode))
-    return file_error(path, "is no folder");
+    return file_error(path, "is not a folder");
   if (about.st_uid != geteuid()) return file_error(path, "belongs to another user");
-  if ((about.st_mode & 077) != 0) return file_error(path, "is open to others");
+  if ((about.st_mode & 077) != 0) return file_error(path, "is accessible by others");
   return {};
 }
 

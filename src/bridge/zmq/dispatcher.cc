@@ -17,9 +17,10 @@ constexpr std::string_view kPublicFull = "describe";  // what it is with one
 void Dispatcher::dispatch(const Envelope& from, std::span<const uint8_t> bytes) {
   if (bytes.size() > kMostUnproven &&
       !web::equal_in_constant_time(peek_token(bytes), services_.context.token))
-    return refuse(from, {},
-                  {ErrorKind::kUsage,
-                   fmt::format("a request of more than {} bytes needs the token", kMostUnproven)});
+    return refuse(
+        from, {},
+        {ErrorKind::kUsage,
+         fmt::format("a request of more than {} bytes requires the token", kMostUnproven)});
   const Result<Request> request = parse_request(bytes);
   if (!request.ok()) return refuse(from, {}, request.error());
   const Result<const Operation*> operation = admit(from, *request);
@@ -29,7 +30,10 @@ void Dispatcher::dispatch(const Envelope& from, std::span<const uint8_t> bytes) 
       [this, from, request = *request, row = *operation] { run(from, request, *row); });
   if (!is_queued)
     refuse(from, request->id,
-           {ErrorKind::kUsage, "too many operations wait already", {}, "wait for their replies"});
+           {ErrorKind::kUsage,
+            "too many operations are already waiting",
+            {},
+            "wait for their replies"});
 }
 
 Result<const Operation*> Dispatcher::admit(const Envelope& from, const Request& request) {

@@ -35,7 +35,7 @@ constexpr int kUnsent = 10000;                          // [ms]
 
 Error key_error(const std::string& file, const SourceLoc& loc, std::string_view why) {
   return {ErrorKind::kUsage, fmt::format("CURVE key '{}' {}", file, why), loc,
-          "curve_keygen makes one; keep its secret in a file of mode 600"};
+          "create one with curve_keygen and keep its secret key in a file of mode 600"};
 }
 
 Result<std::string> read_private_file(const std::string& file, const SourceLoc& loc) {
@@ -50,8 +50,8 @@ Result<std::string> read_private_file(const std::string& file, const SourceLoc& 
     text.resize(bytes > 0 ? static_cast<size_t>(bytes) : 0);
   }
   close(fd);
-  if (!is_file) return key_error(file, loc, "is no file");
-  if ((about.st_mode & 077) != 0) return key_error(file, loc, "may be read by others");
+  if (!is_file) return key_error(file, loc, "is not a file");
+  if ((about.st_mode & 077) != 0) return key_error(file, loc, "is readable by others");
   return text;
 }
 
@@ -101,10 +101,11 @@ Status bind_socket(zmq::socket_t& socket, const ZmqOptions& options, int port,
     *address = socket.get(zmq::sockopt::last_endpoint);
   } catch (const zmq::error_t& error) {
     if (error.num() == EADDRINUSE)
-      return Error{ErrorKind::kIo, fmt::format("port {} is in use: {}", port, wanted), options.loc,
-                   "end the other program, or take [bridge.zmq] port = 0: any two free ones"};
+      return Error{
+          ErrorKind::kIo, fmt::format("port {} is in use: {}", port, wanted), options.loc,
+          "stop the other program, or set [bridge.zmq] port = 0 to use any two free ports"};
     return Error{ErrorKind::kUsage, fmt::format("cannot listen on {}: {}", wanted, error.what()),
-                 options.loc, "[bridge.zmq] host is an address of this machine"};
+                 options.loc, "set [bridge.zmq] host to an address of this machine"};
   }
   return {};
 }
@@ -141,7 +142,7 @@ Result<CurveKey> read_curve_key(const std::string& file, const SourceLoc& loc) {
   CurveKey key{.secret = find_secret(text), .public_key = {}};
   std::array<char, kZ85Key + 1> public_key = {};
   if (key.secret.size() != kZ85Key || zmq_curve_public(public_key.data(), key.secret.c_str()) != 0)
-    return key_error(file, loc, "holds no secret key of 40 characters");
+    return key_error(file, loc, "does not contain a secret key of 40 characters");
   key.public_key = public_key.data();
   return key;
 }
@@ -150,13 +151,14 @@ Result<std::unique_ptr<Endpoints>> Endpoints::bind(const ZmqOptions& options) {
   CurveKey key;
   if (!options.curve_secret.empty()) {
     if (zmq_has("curve") == 0)
-      return Error{ErrorKind::kUnsupported, "this machine's libzmq has no CURVE", options.loc};
+      return Error{ErrorKind::kUnsupported, "libzmq on this machine does not support CURVE",
+                   options.loc};
     GLOAM_TRY(key, read_curve_key(options.curve_secret, options.loc));
   } else if (!web::is_loopback_name(options.host)) {
-    return Error{ErrorKind::kUsage,
-                 fmt::format("ZeroMQ on '{}' would be open to the network", options.host),
-                 options.loc,
-                 "give [bridge.zmq] curve_secret, the file of curve_keygen, or host = '127.0.0.1'"};
+    return Error{
+        ErrorKind::kUsage, fmt::format("ZeroMQ on '{}' would be open to the network", options.host),
+        options.loc,
+        "set [bridge.zmq] curve_secret to a file from curve_keygen, or host = '127.0.0.1'"};
   }
   if (options.port < 0 || options.port > 65534)
     return Error{ErrorKind::kUsage, "port must be 0 ... 65534", options.loc};

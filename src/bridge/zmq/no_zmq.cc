@@ -6,8 +6,8 @@ namespace gloam::bridge {
 
 Result<std::unique_ptr<Bridge>> start_zmq(const BridgeContext&, const ZmqOptions& options) {
   return Error{
-      ErrorKind::kUsage, "this build has no bridge to ZeroMQ", options.loc,
-      "build it where libzmq3-dev, cppzmq-dev and libmsgpack-cxx-dev are installed: ./gloam setup"};
+      ErrorKind::kUsage, "this build does not include the ZeroMQ bridge", options.loc,
+      "install libzmq3-dev, cppzmq-dev and libmsgpack-cxx-dev and rebuild, or run ./gloam setup"};
 }
 
 }  // namespace gloam::bridge

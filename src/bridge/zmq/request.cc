@@ -18,7 +18,7 @@ using msgpack::type::object_type;
 Error no_request(std::string message) {
   return {.kind = ErrorKind::kUsage,
           .message = std::move(message),
-          .hint = "a request is a map {op: text, id: integer or text, token: text, args: map}"};
+          .hint = "send a map {op: text, id: integer or text, token: text, args: map}"};
 }
 
 // Each element takes a byte, so that counts beyond the message's size are refused before memory
@@ -30,14 +30,14 @@ Result<msgpack::object_handle> unpack_within_limits(std::span<const uint8_t> byt
     std::size_t used = 0;
     msgpack::object_handle whole = msgpack::unpack(reinterpret_cast<const char*>(bytes.data()),
                                                    bytes.size(), used, nullptr, nullptr, limit);
-    if (used != bytes.size()) return no_request("more bytes than one msgpack value");
+    if (used != bytes.size()) return no_request("there are extra bytes after the msgpack value");
     return whole;
   } catch (const msgpack::insufficient_bytes&) {
-    return no_request("the msgpack value is cut off");
+    return no_request("the msgpack value is truncated");
   } catch (const msgpack::depth_size_overflow&) {
-    return no_request(fmt::format("values are nested deeper than {}", kMaxDepth));
+    return no_request(fmt::format("values are nested more than {} levels deep", kMaxDepth));
   } catch (const std::exception&) {
-    return no_request("the bytes are no msgpack");
+    return no_request("the bytes are not valid msgpack");
   }
 }
 
@@ -79,7 +79,7 @@ class TokenFinder : public msgpack::null_visitor {
 };
 
 Result<std::string> short_text(const msgpack::object& value, std::string_view key) {
-  if (value.type != object_type::STR) return no_request(fmt::format("'{}' is no text", key));
+  if (value.type != object_type::STR) return no_request(fmt::format("'{}' is not a string", key));
   if (value.via.str.size > kMaxNameBytes)
     return no_request(fmt::format("'{}' has more than {} bytes", key, kMaxNameBytes));
   return std::string(value.via.str.ptr, value.via.str.size);
@@ -90,12 +90,12 @@ Status check_id(const msgpack::object& id) {
       id.type == object_type::POSITIVE_INTEGER || id.type == object_type::NEGATIVE_INTEGER;
   if (is_number || id.type == object_type::NIL) return {};
   if (const auto text = short_text(id, "id"); !text.ok())
-    return no_request("'id' is neither an integer nor a short text");
+    return no_request("'id' is neither an integer nor a short string");
   return {};
 }
 
 Status check_keys(const msgpack::object& arguments) {
-  if (arguments.type != object_type::MAP) return no_request("'args' is no map");
+  if (arguments.type != object_type::MAP) return no_request("'args' is not a map");
   for (uint32_t i = 0; i < arguments.via.map.size; ++i)
     GLOAM_TRY_STATUS(short_text(arguments.via.map.ptr[i].key, "key of args"));
   return {};
@@ -115,7 +115,7 @@ Status take_entry(const std::string& key, const msgpack::object& value, Request*
   } else {
     const std::array<std::string, 4> keys = {"op", "id", "token", "args"};
     return Error{ErrorKind::kUsage,
-                 fmt::format("a request has no '{}'", key.substr(0, 60)),
+                 fmt::format("unknown request key '{}'", key.substr(0, 60)),
                  {},
                  suggest_name(key.substr(0, 60), keys)};
   }
@@ -131,17 +131,17 @@ Result<Request> parse_request(std::span<const uint8_t> bytes) {
   Request request;
   request.memory = std::make_shared<msgpack::object_handle>(std::move(whole));
   const msgpack::object& root = request.memory->get();
-  if (root.type != object_type::MAP) return no_request("the request is no map");
+  if (root.type != object_type::MAP) return no_request("the request is not a map");
   std::vector<std::string> seen;
   for (uint32_t i = 0; i < root.via.map.size; ++i) {
     const msgpack::object_kv& entry = root.via.map.ptr[i];
     GLOAM_TRY(const std::string key, short_text(entry.key, "key"));
     if (std::ranges::count(seen, key) != 0)
-      return no_request(fmt::format("'{}' is there twice", key.substr(0, 60)));
+      return no_request(fmt::format("'{}' is given twice", key.substr(0, 60)));
     GLOAM_TRY_STATUS(take_entry(key, entry.val, &request));
     seen.push_back(key);
   }
-  if (request.operation.empty()) return no_request("the request names no 'op'");
+  if (request.operation.empty()) return no_request("the request has no 'op'");
   return request;
 }
 

@@ -45,7 +45,8 @@ Status Sessions::claim(const Envelope& client, const std::string& robot) {
   session.client = client;
   if (session.leases.contains(robot)) return {};
   if (session.leases.size() >= kMaxClaims)
-    return Error{ErrorKind::kUsage, fmt::format("a client holds {} robots at most", kMaxClaims)};
+    return Error{ErrorKind::kUsage,
+                 fmt::format("a client can claim at most {} robots", kMaxClaims)};
   GLOAM_TRY(std::unique_ptr<ControlLease> lease, simulation_.claim(handle));
   session.leases[robot] = std::move(lease);
   return {};

@@ -69,7 +69,7 @@ class GeometryReader {
       if (!source || !accessor || !array)
         return document_->bad(
             input,
-            fmt::format("refers to source '{:.80}', which does not exist or contains no numbers",
+            fmt::format("refers to source '{:.80}', which is not defined or contains no numbers",
                         url));
       GLOAM_TRY_STATUS(document_->read_floats(array, &out.values));
       out.count = accessor.attribute("count").as_uint();

@@ -128,7 +128,7 @@ int add_bent_mesh(GltfDocument* document, const JsonNode& node, const GltfMeshTa
   }
   if (!bend_mesh(part.weights, X_FM, &mesh)) {
     node["skin"].fail(
-        fmt::format("a vertex refers to a joint that does not exist; there are {}", X_FM.size()));
+        fmt::format("a vertex refers to a joint that is out of range; there are {}", X_FM.size()));
     return -1;
   }
   const Status sound = finish_mesh(&mesh, node.pointer(), document->source().name, model);

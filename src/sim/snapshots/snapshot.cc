@@ -11,7 +11,7 @@ template <class H>
 void check_handle(const SnapshotData& data, H handle, mjtSize count) {
   GLOAM_CHECK(handle.world == 0 || handle.world == data.world->serial,
               "the handle belongs to another World than the Snapshot; look it up again");
-  GLOAM_CHECK(handle.id >= 0 && handle.id < count, "the handle does not exist in this World");
+  GLOAM_CHECK(handle.id >= 0 && handle.id < count, "the handle is out of range in this World");
 }
 
 }  // namespace

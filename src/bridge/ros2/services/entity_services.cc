@@ -78,7 +78,7 @@ si::Result set_state(Operator& op, const srv::SetEntityState_Request& request) {
     Pose pose = pose_from_ros(request.state.pose);
     if (!is_finite(pose.p) || !normalize(&pose.q))
       return result_of(Response::INVALID_POSE,
-                       "the pose has no unit quaternion, or numbers that are not finite");
+                       "the pose is not finite, or its orientation is not a unit quaternion");
     change.X_WE = pose;
   }
   if (request.set_twist) {
@@ -136,7 +136,7 @@ si::Result set_info(Operator& op, const srv::SetEntityInfo_Request& request) {
   if (!entity.ok()) return result_of(entity.error());
   EntityKind kind;
   if (!kind_from_message(request.info.category.category, &kind))
-    return result_of(EntityCode::RESULT_OPERATION_FAILED, "there is no such category");
+    return result_of(EntityCode::RESULT_OPERATION_FAILED, "the category does not exist");
   const Status status =
       op.set_info(request.entity, request.info.description, request.info.tags, kind);
   if (status.ok()) return result_ok();

@@ -88,7 +88,7 @@ rsrv::DescribeParameters_Response NodeParameters::describe(
     }
     if (!live_field_of(name).empty() && op_.live_field(live_field_of(name)).ok()) {
       descriptor.type = ParameterType::PARAMETER_DOUBLE_ARRAY;
-      descriptor.description = "Live field of the model; set whole, it changes at the next step";
+      descriptor.description = "Live field of the model; set as a whole, changes at the next step";
       continue;
     }
     const auto option = std::ranges::find(options, name, &OptionInfo::path);

@@ -17,12 +17,13 @@ using ri::ParameterType;
 using Outcome = ri::SetParametersResult;
 
 constexpr OwnParameter kOwn[] = {
-    {"use_sim_time", ParameterType::PARAMETER_BOOL, "The node is the clock", true},
-    {"paused", ParameterType::PARAMETER_BOOL, "Whether the simulation rests", false},
+    {"use_sim_time", ParameterType::PARAMETER_BOOL, "Always true: the node publishes the clock",
+     true},
+    {"paused", ParameterType::PARAMETER_BOOL, "Whether the simulation is paused", false},
     {"speed", ParameterType::PARAMETER_DOUBLE,
      "Simulated seconds per second, 0.001 … 1000; 0 = as fast as possible", false},
     {"pace", ParameterType::PARAMETER_STRING,
-     "fast, realtime, or sensors: waits for every sensor that is read", false},
+     "fast, realtime, or sensors (wait for every subscribed sensor)", false},
 };
 
 constexpr std::string_view kLive = "live.";
@@ -39,7 +40,7 @@ Outcome check_live(const ri::Parameter& parameter, size_t count) {
   const bool good = numbers_of(parameter.value, &numbers) && numbers.size() == count &&
                     std::ranges::all_of(numbers, [](double v) { return std::isfinite(v); });
   if (good) return {true, ""};
-  return refused("'" + parameter.name + "' has " + std::to_string(count) + " finite numbers");
+  return refused("'" + parameter.name + "' must have " + std::to_string(count) + " finite numbers");
 }
 
 }  // namespace
@@ -80,17 +81,17 @@ Outcome NodeParameters::check_own(const ri::Parameter& parameter) const {
   }
   if (own.type == ParameterType::PARAMETER_BOOL)
     return parameter.value.type == own.type ? Outcome{true, ""}
-                                            : refused("'" + parameter.name + "' is a bool");
+                                            : refused("'" + parameter.name + "' must be a bool");
   if (own.type == ParameterType::PARAMETER_STRING) {
     const std::string& name = parameter.value.string_value;
     const bool good =
         parameter.value.type == own.type && pace_named(name).ok() && name != "lockstep";
-    return good ? Outcome{true, ""} : refused("'pace' is one of: fast, realtime, sensors");
+    return good ? Outcome{true, ""} : refused("'pace' must be one of: fast, realtime, sensors");
   }
   double number = 0;
   const bool good =
       number_of(parameter.value, &number) && (number == 0 || (number >= 1e-3 && number <= 1e3));
-  return good ? Outcome{true, ""} : refused("'speed' is 0, or 0.001 … 1000");
+  return good ? Outcome{true, ""} : refused("'speed' must be 0 or 0.001 … 1000");
 }
 
 Status NodeParameters::set_own(const ri::Parameter& parameter) {
@@ -120,7 +121,7 @@ Outcome NodeParameters::set_all(const std::vector<ri::Parameter>& parameters) {
       if (Outcome checked = check_own(parameter); !checked.successful) return checked;
       continue;
     }
-    if (is_fixed_option(name)) return refused("'" + name + "' cannot be changed in a run");
+    if (is_fixed_option(name)) return refused("'" + name + "' cannot be changed during a run");
     std::string toml = parameter_to_toml(parameter.value);
     if (toml.empty()) return refused("'" + name + "' cannot have a value of this type");
     options.emplace_back(name, std::move(toml));

@@ -28,7 +28,7 @@ std::vector<Ros2Service> parameter_services(Operator& operations, const std::str
       base + "set_parameters", worker, {}, [all](const auto& r) { return all->set(r); }));
   list.push_back(make_slow_service<rsrv::SetParametersAtomically_Request,
                                    rsrv::SetParametersAtomically_Response>(
-      base + "set_parameters_atomically", worker, {{false, "too many requests wait"}},
+      base + "set_parameters_atomically", worker, {{false, "too many requests are waiting"}},
       [all](const auto& r) { return all->set_atomically(r); }));
   return list;
 }

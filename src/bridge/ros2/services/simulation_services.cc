@@ -69,13 +69,13 @@ si::Result set_state(Operator& operations, uint8_t target) {
   }
   if (target > State::STATE_PAUSED)
     return result_of(Response::INCORRECT_TRANSITION,
-                     "worlds are loaded by load_world and unloaded by unload_world");
+                     "use load_world and unload_world to load and unload worlds");
   if (now == RunState::kNoWorld || now == RunState::kLoading)
     return result_of(Response::INCORRECT_TRANSITION,
                      std::string("the simulation is in state '") + to_string(now) + "'");
   if (target == state_message(now) && now != RunState::kFailed)
     return result_of(Response::ALREADY_IN_TARGET_STATE,
-                     std::string("the simulation is ") + to_string(now) + " already");
+                     std::string("the simulation is already ") + to_string(now));
   const Status status = target == State::STATE_PLAYING   ? operations.play()
                         : target == State::STATE_STOPPED ? operations.stop()
                                                          : operations.pause();
@@ -101,9 +101,9 @@ si::Result reset(Operator& operations, uint8_t scope) {
   const bool spawned = (scope & Request::SCOPE_SPAWNED) != 0;
   if (time && !state)
     return result_of(ResultCode::RESULT_FEATURE_UNSUPPORTED,
-                     "time is not reset without the state: ask for both, scope 3");
+                     "time cannot be reset without the state; request both with scope 3");
   if (!state && !spawned)
-    return result_of(ResultCode::RESULT_FEATURE_UNSUPPORTED, "there is no such scope");
+    return result_of(ResultCode::RESULT_FEATURE_UNSUPPORTED, "the scope does not exist");
   return result_of(operations.reset({.state = state, .spawned = spawned}));
 }
 
@@ -112,7 +112,7 @@ si::Result reset(Operator& operations, uint8_t scope) {
 void add_run_services(ServiceTable* table) {
   Operator* const op = &table->operations;
   const std::string& ns = table->ns;
-  const auto busy = result_of(ResultCode::RESULT_OPERATION_FAILED, "too many requests wait");
+  const auto busy = result_of(ResultCode::RESULT_OPERATION_FAILED, "too many requests are waiting");
   const auto add = [table](Ros2Service service) { table->list.push_back(std::move(service)); };
   add(make_service<srv::GetSimulatorFeatures_Request, srv::GetSimulatorFeatures_Response>(
       ns + "/get_simulator_features", [](const auto&) { return features(); }));

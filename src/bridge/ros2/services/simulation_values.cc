@@ -35,8 +35,8 @@ class BoundsTest {
     test.type_ = bounds.type;
     if (bounds.type == si::Bounds::TYPE_EMPTY) return test;
     if (bounds.type != si::Bounds::TYPE_BOX && bounds.type != si::Bounds::TYPE_SPHERE)
-      return Error{ErrorKind::kUnsupported, "bounds are boxes or spheres here"};
-    if (bounds.points.size() != 2) return Error{ErrorKind::kInput, "bounds have two points"};
+      return Error{ErrorKind::kUnsupported, "only boxes and spheres are supported as bounds"};
+    if (bounds.points.size() != 2) return Error{ErrorKind::kInput, "bounds must have two points"};
     const Vec3 a = vec_from_ros(bounds.points[0]), b = vec_from_ros(bounds.points[1]);
     if (!is_finite(a) || !is_finite(b)) return Error{ErrorKind::kInput, "bounds are not finite"};
     test.low_ = {std::min(a.x, b.x), std::min(a.y, b.y), std::min(a.z, b.z)};
@@ -70,7 +70,8 @@ Status keep_matching(const std::string& filter, std::vector<Entity>* entities) {
   options.set_max_mem(kFilterMemory);
   const RE2 pattern(filter.size() > kLongestFilter ? "(" : filter, options);
   if (!pattern.ok())
-    return Error{ErrorKind::kInput, "the filter is no regular expression: " + pattern.error()};
+    return Error{ErrorKind::kInput,
+                 "the filter is not a valid regular expression: " + pattern.error()};
   std::erase_if(*entities, [&](const Entity& e) { return !RE2::PartialMatch(e.name, pattern); });
   return {};
 }

@@ -58,8 +58,8 @@ srv::SpawnEntity_Response spawn(Operator& op, const Request& request) {
 srv::SpawnEntities_Response spawn_all(Operator& op, const srv::SpawnEntities_Request& request) {
   srv::SpawnEntities_Response response;
   if (request.spawn_requests.size() > kMostAtOnce) {
-    response.result =
-        result_of(SpawnCode::RESULT_OPERATION_FAILED, "at most 256 entities are spawned at once");
+    response.result = result_of(SpawnCode::RESULT_OPERATION_FAILED,
+                                "at most 256 entities can be spawned at once");
     return response;
   }
   size_t failures = 0;
@@ -68,10 +68,10 @@ srv::SpawnEntities_Response spawn_all(Operator& op, const srv::SpawnEntities_Req
     if (response.results.back().result.result != SpawnCode::RESULT_OK) ++failures;
   }
   if (failures > 0)
-    response.result =
-        result_of(srv::SpawnEntities_Response::ENTITIES_SPAWN_FAILED,
-                  std::to_string(failures) + " of " +
-                      std::to_string(request.spawn_requests.size()) + " entities did not spawn");
+    response.result = result_of(srv::SpawnEntities_Response::ENTITIES_SPAWN_FAILED,
+                                std::to_string(failures) + " of " +
+                                    std::to_string(request.spawn_requests.size()) +
+                                    " entities could not be spawned");
   return response;
 }
 
@@ -119,7 +119,7 @@ srv1::GetSpawnables_Response get_spawnables_1(const Operator& op,
 void add_spawn_services(ServiceTable* table) {
   Operator* const op = &table->operations;
   const std::string& ns = table->ns;
-  const auto busy = result_of(SpawnCode::RESULT_OPERATION_FAILED, "too many requests wait");
+  const auto busy = result_of(SpawnCode::RESULT_OPERATION_FAILED, "too many requests are waiting");
   const auto add = [table](Ros2Service service) { table->list.push_back(std::move(service)); };
   const auto& worker = table->worker;
   if (table->interfaces == 1) {

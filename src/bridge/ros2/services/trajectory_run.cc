@@ -48,9 +48,9 @@ Result<std::vector<Joint>> find_joints(const Snapshot& snapshot, const std::stri
     if (!joint.ok()) joint = world.find_joint(name);
     if (!joint.ok()) return joint.error();
     if (snapshot[*joint].qpos.size() != 1)
-      return Error{ErrorKind::kInput, "joint '" + name + "' is no hinge or slide"};
+      return Error{ErrorKind::kInput, "joint '" + name + "' is neither a hinge nor a slide"};
     if (std::ranges::any_of(joints, [&](const Joint& other) { return other.id == joint->id; }))
-      return Error{ErrorKind::kInput, "joint '" + name + "' is there twice"};
+      return Error{ErrorKind::kInput, "joint '" + name + "' is listed twice"};
     joints.push_back(*joint);
   }
   return joints;
@@ -86,7 +86,8 @@ TrajectoryRun::TrajectoryRun(Simulation& simulation, std::string robot, int inte
 GoalEnd TrajectoryRun::run(GoalContext& context) {
   Snapshot now = simulation_.latest();
   if (stamp_ > 0 && stamp_ + way_.end() < now.time())
-    return aborted(JointResult::OLD_HEADER_TIMESTAMP, "the trajectory ended before it came");
+    return aborted(JointResult::OLD_HEADER_TIMESTAMP,
+                   "the trajectory ended before it was received");
   if (const Status begun = begin(now); !begun.ok())
     return aborted(JointResult::INVALID_GOAL, begun.error().to_string());
   SnapshotInbox inbox;
@@ -172,9 +173,10 @@ std::optional<GoalEnd> TrajectoryRun::look(const Snapshot& now, GoalContext& con
     return trajectory_end(GoalState::STATUS_SUCCEEDED, JointResult::SUCCESSFUL, "");
   if (is_over && time > way_.end() + settling_)
     return aborted(JointResult::GOAL_TOLERANCE_VIOLATED,
-                   "joint '" + beyond + "' is not where it should end");
+                   "joint '" + beyond + "' did not reach its goal");
   if (!is_over && !beyond.empty())
-    return aborted(JointResult::PATH_TOLERANCE_VIOLATED, "joint '" + beyond + "' is off its way");
+    return aborted(JointResult::PATH_TOLERANCE_VIOLATED,
+                   "joint '" + beyond + "' deviates from its path");
   return {};
 }
 

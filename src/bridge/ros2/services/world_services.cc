@@ -31,7 +31,8 @@ int load_code(const Error& error) {
   };
   if (error.kind == ErrorKind::kUnsupported) return Response::UNSUPPORTED_ELEMENTS;
   if (says("there is no world") || says("there is no folder") || says("neither an address") ||
-      says("lies outside what clients") || says("no address"))
+      says("outside of the folders that clients") || says("not a file address") ||
+      says("not a supported address"))
     return Response::NO_RESOURCE;
   if (says("there is no file") || says("does not exist") || says("cannot be read") ||
       says("could not open"))
@@ -52,13 +53,13 @@ bool is_foreign(const std::string& uri, const std::string& text) {
 srv::LoadWorld_Response load(Operator& op, const std::string& uri, const std::string& text) {
   srv::LoadWorld_Response response;
   if (uri.empty() && text.empty()) {
-    response.result =
-        result_of(srv::LoadWorld_Response::NO_RESOURCE, "there is neither an address nor a text");
+    response.result = result_of(srv::LoadWorld_Response::NO_RESOURCE,
+                                "the request contains neither an address nor a text");
     return response;
   }
   if (is_foreign(uri, uri.empty() ? text : "")) {
     response.result = result_of(srv::LoadWorld_Response::UNSUPPORTED_FORMAT,
-                                "worlds are scenes in TOML, or MJCF (docs/scenes.md)");
+                                "a world must be a TOML scene or an MJCF model (docs/scenes.md)");
     return response;
   }
   const Result<WorldFile> world = op.load_world(uri, uri.empty() ? text : "");
@@ -103,7 +104,7 @@ srv::GetAvailableWorlds_Response available(const Operator& op,
 void add_world_services(ServiceTable* table) {
   Operator* const op = &table->operations;
   const std::string& ns = table->ns;
-  const auto busy = result_of(WorldCode::RESULT_OPERATION_FAILED, "too many requests wait");
+  const auto busy = result_of(WorldCode::RESULT_OPERATION_FAILED, "too many requests are waiting");
   const auto add = [table](Ros2Service service) { table->list.push_back(std::move(service)); };
   const auto& worker = table->worker;
   if (table->interfaces == 1) {

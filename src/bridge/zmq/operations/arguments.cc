@@ -110,16 +110,17 @@ Status check_one(std::string_view name, const msgpack::object& value,
   if (row == list.end()) {
     std::vector<std::string> names;
     for (const Argument& argument : list) names.emplace_back(argument.name);
-    return wrong(fmt::format("there is no argument '{}'", name.substr(0, 60)),
-                 names.empty() ? "it takes none" : suggest_name(name.substr(0, 60), names));
+    return wrong(
+        fmt::format("there is no argument '{}'", name.substr(0, 60)),
+        names.empty() ? "the operation has no arguments" : suggest_name(name.substr(0, 60), names));
   }
   if (!fits_type(value, row->type))
     return wrong(fmt::format("argument '{}' is not {}", name, to_string(row->type)),
                  std::string(row->about));
   if (row->type == ArgumentType::kNumbers && row->count != 0 &&
       numbers_of(value).size() != row->count)
-    return wrong(fmt::format("argument '{}' has {} numbers, not {}", name, numbers_of(value).size(),
-                             row->count),
+    return wrong(fmt::format("argument '{}' has {} numbers, expected {}", name,
+                             numbers_of(value).size(), row->count),
                  std::string(row->about));
   return {};
 }
@@ -147,7 +148,7 @@ std::string_view to_string(ArgumentType type) {
     case ArgumentType::kNumbersMap:
       return "map of arrays of numbers";
     case ArgumentType::kTextMap:
-      return "map of texts";
+      return "map of strings";
   }
   return "";
 }
@@ -160,7 +161,7 @@ Result<Arguments> Arguments::check(const msgpack::object& map, std::span<const A
     const std::string_view name = text_of(entry.key);
     GLOAM_TRY_STATUS(check_one(name, entry.val, list));
     if (arguments.find(name) != &entry.val)
-      return wrong(fmt::format("argument '{}' is there twice", name));
+      return wrong(fmt::format("argument '{}' is given twice", name));
   }
   for (const Argument& argument : list)
     if (argument.is_required && !arguments.has(argument.name))

@@ -38,7 +38,7 @@ Result<RobotInfo> robot_of(const Call& call, const World& world) {
     return Error{ErrorKind::kUsage,
                  fmt::format("there are {} robots, not one", robots.size()),
                  {},
-                 "name one as 'robot'"};
+                 "select one with 'robot'"};
   const auto found = std::ranges::find(names, name);
   if (found == names.end())
     return Error{ErrorKind::kInput,
@@ -50,14 +50,15 @@ Result<RobotInfo> robot_of(const Call& call, const World& world) {
 
 std::vector<Operation> claim_operations() {
   const Argument robot{"robot", ArgumentType::kText, false, "",
-                       "its name; the only one's by default"};
+                       "name of the robot; optional if there is only one"};
   return {
       {"claim",
-       "makes a robot's controls and goals this client's alone until it releases it or is gone",
+       "reserves a robot's controls and goals for this client until it releases the robot or "
+       "disconnects",
        kAtOnce,
        {robot},
        claim},
-      {"release", "gives a claimed robot back", kAtOnce, {robot}, release},
+      {"release", "releases a claimed robot", kAtOnce, {robot}, release},
   };
 }
 

@@ -162,10 +162,10 @@ Status topics(const Call& call, Packer& out) {
 
 std::vector<Operation> hello_operations() {
   const Argument machine{"machine", kText, false, "",
-                         "boot id:user id; tells whether shared memory can be used"};
+                         "boot id:user id; determines whether shared memory can be used"};
   return {
       {"hello",
-       "who the server is, without a token too; with one the same as describe",
+       "identifies the server, also without a token; with the token equivalent to describe",
        kAtOnce,
        {machine},
        hello},
@@ -174,7 +174,7 @@ std::vector<Operation> hello_operations() {
        kQueued,
        {machine},
        describe},
-      {"topics", "topics of the World that runs: [{name, type, …}]", kQueued, {}, topics},
+      {"topics", "topics of the running World: [{name, type, …}]", kQueued, {}, topics},
   };
 }
 

@@ -38,7 +38,8 @@ Result<CameraRequest> picture_request(const Call& call) {
   const int64_t height = call.arguments.integer("height");
   if (width < 0 || height < 0 || width > kMaxSide || height > kMaxSide ||
       static_cast<size_t>(width * height) > kMaxPixels)
-    return Error{ErrorKind::kInput, fmt::format("a side of a picture has 1 ... {} px", kMaxSide)};
+    return Error{ErrorKind::kInput,
+                 fmt::format("the width and height of an image must be 1 ... {} px", kMaxSide)};
   request.width = static_cast<int>(width);
   request.height = static_cast<int>(height);
   request.render = call.services.simulation().world().scene().render;
@@ -169,30 +170,31 @@ Status labels(const Call& call, Packer& out) {
 std::vector<Operation> record_operations() {
   return {
       {"record_start",
-       "begins an MCAP log of the run: {file}; one at a time",
+       "starts an MCAP log of the run: {file}; one at a time",
        kQueued,
-       {{"name", kText, false, "", "file name in the recording folder; default by date"},
-        {"topics", kTexts, false, "", "names, * stands for any text; default the usual ones"}},
+       {{"name", kText, false, "", "file name in the recording folder; default: the date"},
+        {"topics", kTexts, false, "", "names; * matches any text; default: the usual topics"}},
        record_start},
-      {"record_stop", "ends the log: {file}", kQueued, {}, record_stop},
+      {"record_stop", "stops the log: {file}", kQueued, {}, record_stop},
       {"picture",
-       "one picture of the present instant, each channel {dtype, shape, data}",
+       "renders one image of the current instant, each channel as {dtype, shape, data}",
        kQueued,
-       {{"camera", kText, false, "", "full name; default 'free', which sees the whole model"},
-        {"width", kInteger, false, "px", "default the camera's own"},
-        {"height", kInteger, false, "px", "default the camera's own"},
-        {"outputs", kTexts, false, "", "rgb, depth, segmentation, normal …; default rgb"},
-        {"position", kNumbers, false, "m, (3)", "of the free camera", 3},
-        {"orientation", kNumbers, false, "(4)", "w x y z; it looks along -Z, +Y up", 4},
-        {"jpeg", kBool, false, "", "rgb as a JPEG file instead of pixels"}},
+       {{"camera", kText, false, "", "full name; default: 'free', which shows the whole model"},
+        {"width", kInteger, false, "px", "default: that of the camera"},
+        {"height", kInteger, false, "px", "default: that of the camera"},
+        {"outputs", kTexts, false, "", "rgb, depth, segmentation, normal …; default: rgb"},
+        {"position", kNumbers, false, "m, (3)", "position of the free camera", 3},
+        {"orientation", kNumbers, false, "(4)", "w x y z; the camera looks along -Z, with +Y up",
+         4},
+        {"jpeg", kBool, false, "", "return rgb as a JPEG file instead of pixels"}},
        picture},
       {"value",
-       "any array of MuJoCo's by its name, of all or of one element: {values}",
+       "reads a MuJoCo array by its name, for all elements or for one: {values}",
        kQueued,
-       {{"field", kText, true, "MuJoCo's", "xpos, geom_friction, opt.gravity …"},
-        {"element", kText, false, "", "full name; default all, row by row"}},
+       {{"field", kText, true, "as in MuJoCo", "xpos, geom_friction, opt.gravity …"},
+        {"element", kText, false, "", "full name; default: all, row by row"}},
        value},
-      {"labels", "ids in pictures of segmentation", kQueued, {}, labels},
+      {"labels", "ids in segmentation images", kQueued, {}, labels},
   };
 }
 

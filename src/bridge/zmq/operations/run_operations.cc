@@ -150,7 +150,10 @@ Status checkpoints(const Call& call, Packer& out) {
 Status seek(const Call& call, Packer& out) {
   LogPlayer* const player = call.services.context.player;
   if (player == nullptr)
-    return Error{ErrorKind::kUsage, "this is no replay", {}, "gloam replay LOG --zmq is one"};
+    return Error{ErrorKind::kUsage,
+                 "the run is not a replay",
+                 {},
+                 "start a replay with gloam replay LOG --zmq"};
   GLOAM_TRY_STATUS(player->seek(call.arguments.number("time")));
   return pack_latest(call, out);
 }
@@ -164,39 +167,43 @@ Status end(const Call& call, Packer& out) {
 }  // namespace
 
 std::vector<Operation> run_operations() {
-  const Argument id{"id", kInteger, true, "", "number that 'checkpoint' gave"};
+  const Argument id{"id", kInteger, true, "", "number returned by 'checkpoint'"};
   return {
-      {"ping", "answers at once, whatever else goes on", kAtOnce, {}, ping},
-      {"state", "the latest instant, and how the run is", kAtOnce, {}, state},
-      {"pause", "stops after the present step; steps that are being taken end", kAtOnce, {}, pause},
-      {"resume", "runs until paused", kAtOnce, {}, resume},
+      {"ping", "responds immediately, even during other operations", kAtOnce, {}, ping},
+      {"state", "the latest instant and the status of the run", kAtOnce, {}, state},
+      {"pause", "pauses after the current step; ends a 'step' in progress", kAtOnce, {}, pause},
+      {"resume", "resumes the run until it is paused", kAtOnce, {}, resume},
       {"pace",
-       "speed of a run",
+       "sets the speed of the run",
        kAtOnce,
        {{"speed", kNumber, false, "simulated seconds per second",
-         "0.001 to 1000; without speed and pace as fast as possible"},
+         "0.001 to 1000; without speed and pace: as fast as possible"},
         {"pace", kText, false, "", "fast, realtime or sensors (docs/sensors.md)"}},
        pace},
       {"step",
-       "takes steps and answers with the state after the last; the run must be paused",
+       "executes steps and returns the state after the last one; the run must be paused",
        kQueued,
-       {{"n", kInteger, false, "steps", "1 or more; default 1"},
+       {{"n", kInteger, false, "steps", "1 or more; default: 1"},
         {"paced", kBool, false, "", "at the pace of the run instead of as fast as possible"}},
        step},
       {"reset",
-       "back to the initial state; its entities are those that the scene began with",
+       "returns to the initial state with the initial entities of the scene",
        kQueued,
-       {{"state", kBool, false, "", "state and time; default true"},
-        {"spawned", kBool, false, "", "entities too; default true"}},
+       {{"state", kBool, false, "", "reset state and time; default: true"},
+        {"spawned", kBool, false, "", "reset the entities too; default: true"}},
        reset},
-      {"checkpoint", "keeps the present instant, {id}; 64 at most", kQueued, {}, checkpoint},
-      {"restore", "goes on from a checkpoint", kQueued, {id}, restore},
-      {"forget_checkpoint", "lets go of a checkpoint", kQueued, {id}, forget_checkpoint},
-      {"checkpoints", "those that are kept: [{id, step, time, hash}]", kQueued, {}, checkpoints},
-      {"seek",
-       "goes to an instant of a replay",
+      {"checkpoint", "saves the current instant: {id}; at most 64", kQueued, {}, checkpoint},
+      {"restore", "continues from a checkpoint", kQueued, {id}, restore},
+      {"forget_checkpoint", "deletes a checkpoint", kQueued, {id}, forget_checkpoint},
+      {"checkpoints",
+       "lists the saved checkpoints: [{id, step, time, hash}]",
        kQueued,
-       {{"time", kNumber, true, "s", "from 0 to the log's end"}},
+       {},
+       checkpoints},
+      {"seek",
+       "seeks to an instant of a replay",
+       kQueued,
+       {{"time", kNumber, true, "s", "from 0 to the end of the log"}},
        seek},
       {"end", "ends the program", kAtOnce, {}, end},
   };

@@ -75,7 +75,7 @@ Status entity_state(const Call& call, Packer& out) {
 Status set_entity_state(const Call& call, Packer& out) {
   StateChange change;
   if (call.arguments.has("orientation") && !call.arguments.has("position"))
-    return Error{ErrorKind::kUsage, "an 'orientation' comes with a 'position'"};
+    return Error{ErrorKind::kUsage, "'orientation' requires 'position'"};
   if (call.arguments.has("position")) change.X_WE = pose_argument(call);
   if (call.arguments.has("velocity")) change.velocity = vector_argument(call, "velocity");
   if (call.arguments.has("angular_velocity"))
@@ -155,7 +155,7 @@ Status load_world(const Call& call, Packer& out) {
 }  // namespace
 
 std::vector<Operation> world_operations() {
-  const Argument name{"name", kText, true, "", "of an entity"};
+  const Argument name{"name", kText, true, "", "name of an entity"};
   const Argument position{"position", kNumbers, false, "m, (3)", "x y z", 3};
   const Argument orientation{"orientation", kNumbers, false, "(4)", "unit quaternion w x y z", 4};
   return {
@@ -166,7 +166,7 @@ std::vector<Operation> world_operations() {
        {name},
        entity_state},
       {"set_entity_state",
-       "puts what floats, or a mocap body, elsewhere",
+       "sets the state of a floating entity or the pose of a mocap body",
        kQueued,
        {name,
         position,
@@ -175,30 +175,34 @@ std::vector<Operation> world_operations() {
         {"angular_velocity", kNumbers, false, "rad/s, (3)", "world axes", 3}},
        set_entity_state},
       {"spawn",
-       "adds an entity: {name}; the scene is compiled again and the run goes on",
+       "adds an entity: {name}; the scene is recompiled and the run continues",
        kQueued,
-       {{"uri", kText, false, "", "file of MJCF, URDF or a mesh; gloam://prop/KIND"},
-        {"text", kText, false, "", "MJCF or URDF itself, instead of 'uri'"},
-        {"name", kText, false, "", "default: after the file"},
-        {"allow_renaming", kBool, false, "", "NAME_2 … where NAME is taken"},
-        {"namespace", kText, false, "", "of a robot's topics; default /NAME"},
-        {"frame", kText, false, "", "body that the pose is relative to; default the world"},
+       {{"uri", kText, false, "", "an MJCF, URDF or mesh file, or gloam://prop/KIND"},
+        {"text", kText, false, "", "the MJCF or URDF text, instead of 'uri'"},
+        {"name", kText, false, "", "default: derived from the file name"},
+        {"allow_renaming", kBool, false, "", "use NAME_2 … if NAME is in use"},
+        {"namespace", kText, false, "", "namespace of a robot's topics; default: /NAME"},
+        {"frame", kText, false, "", "body that the pose is relative to; default: the world"},
         position,
         orientation},
        spawn},
-      {"remove",
-       "takes an entity away; the scene is compiled again",
+      {"remove", "removes an entity; the scene is recompiled", kQueued, {name}, remove_entity},
+      {"named_poses", "lists the named places: [{name, position, …}]", kQueued, {}, named_poses},
+      {"spawnables",
+       "lists what 'spawn' can add: [{uri, description, size}]",
        kQueued,
-       {name},
-       remove_entity},
-      {"named_poses", "places by name: [{name, position, …}]", kQueued, {}, named_poses},
-      {"spawnables", "what 'spawn' knows: [{uri, description, size}]", kQueued, {}, spawnables},
-      {"worlds", "scenes that 'load_world' knows: [{name, uri, …}]", kQueued, {}, worlds},
+       {},
+       spawnables},
+      {"worlds",
+       "lists the scenes that 'load_world' can load: [{name, uri, …}]",
+       kQueued,
+       {},
+       worlds},
       {"load_world",
-       "another scene, stopped at its first instant",
+       "loads another scene, stopped at its first instant",
        kQueued,
-       {{"uri", kText, false, "", "name of one of 'worlds', path or file:// address"},
-        {"text", kText, false, "", "the scene itself in TOML"}},
+       {{"uri", kText, false, "", "name listed by 'worlds', path or file:// address"},
+        {"text", kText, false, "", "the text of the scene in TOML"}},
        load_world},
   };
 }

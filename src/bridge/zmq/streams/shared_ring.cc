@@ -58,7 +58,7 @@ Error ring_error(std::string_view what) {
   return {ErrorKind::kIo,
           fmt::format("shared memory: {}: {}", what, std::strerror(errno)),
           {},
-          "/dev/shm needs room; [bridge.zmq] shared_memory = false does without it"};
+          "free some space in /dev/shm, or set [bridge.zmq] shared_memory = false"};
 }
 
 }  // namespace
@@ -83,7 +83,7 @@ Result<std::unique_ptr<SharedRing>> SharedRing::create(size_t bytes) {
   GLOAM_TRY(const std::string token, web::make_token());
   std::string name = fmt::format("/{}{}-{}", kPrefix, getpid(), token.substr(0, 16));
   const int fd = shm_open(name.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
-  if (fd < 0) return ring_error("cannot be made");
+  if (fd < 0) return ring_error("cannot be created");
   std::unique_ptr<SharedRing> ring(new SharedRing(std::move(name), fd));
   if (flock(fd, LOCK_EX) != 0) return ring_error("cannot be locked");
   GLOAM_TRY_STATUS(ring->map(bytes));
@@ -96,7 +96,7 @@ Status SharedRing::map(size_t bytes) {
   // Pages are taken now: a full /dev/shm would end the program at a write.
   if (const int fault = posix_fallocate(fd_, 0, static_cast<off_t>(total_bytes_)); fault != 0) {
     errno = fault;
-    return ring_error("no room");
+    return ring_error("no space left");
   }
   void* memory = mmap(nullptr, total_bytes_, PROT_READ | PROT_WRITE, MAP_SHARED, fd_, 0);
   if (memory == MAP_FAILED) return ring_error("cannot be mapped");

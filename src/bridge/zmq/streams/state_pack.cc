@@ -24,7 +24,7 @@ Result<StateLayout> StateLayouts::of(const Snapshot& snapshot) {
   layout.ctrl_begin =
       1 + layout.nq + 2 * layout.nv + length_of(instant, "act") + length_of(instant, "history");
   if (layout.ctrl_begin + layout.nu > snapshot.state().size())
-    return Error{ErrorKind::kUnsupported, "the state has another layout"};
+    return Error{ErrorKind::kUnsupported, "the state has an unexpected layout"};
   world_ = world;
   layout_ = layout;
   return layout;

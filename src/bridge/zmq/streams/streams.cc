@@ -102,7 +102,7 @@ void Streams::follow(const Plan& plan) {
       tell(subscription, {ErrorKind::kUsage,
                           fmt::format("no stream '{}'", subscription),
                           {},
-                          "topics begin with /; state, decoded/TOPIC, shm/TOPIC"});
+                          "use /TOPIC, decoded/TOPIC, shm/TOPIC or state"});
   follow_topics(plan);
   follow_states(plan);
 }
@@ -143,14 +143,15 @@ void Streams::tell_refused(const std::string& topic, const std::set<StreamForm>&
   for (const StreamForm form : forms) {
     if (!is_there)
       tell(name_of(topic, form), {ErrorKind::kInput,
-                                  fmt::format("no topic '{}' is said", topic),
+                                  fmt::format("no output topic '{}'", topic),
                                   {},
-                                  "operation 'topics' lists them"});
+                                  "operation 'topics' lists all topics"});
     else if (!may_send(form))
-      tell(name_of(topic, form), {ErrorKind::kUsage,
-                                  "shared memory is off",
-                                  {},
-                                  "[bridge.zmq] shared_memory = true; or subscribe without 'shm'"});
+      tell(name_of(topic, form),
+           {ErrorKind::kUsage,
+            "shared memory is disabled",
+            {},
+            "set [bridge.zmq] shared_memory = true, or subscribe without 'shm'"});
   }
 }
 
@@ -184,7 +185,7 @@ void Streams::follow_states(const Plan& plan) {
   for (const std::string& subscription : plan.wanted) {
     if (!is_state(subscription) || states_.contains(subscription)) continue;
     if (states_.size() >= kMaxStateRates) {
-      tell(subscription, {ErrorKind::kUsage, "there are too many rates of states"});
+      tell(subscription, {ErrorKind::kUsage, "too many different state rates"});
       continue;
     }
     auto feed = std::make_unique<StateFeed>();

@@ -36,10 +36,11 @@ Result<Rational> parse_rate(std::string_view subscription) {
   const auto end = digits.data() + digits.size();
   const auto read = std::from_chars(digits.data(), end, rate);
   if (read.ec != std::errc() || read.ptr != end || rate < 0 || rate > 1000000)
-    return Error{ErrorKind::kUsage,
-                 fmt::format("'{}' is no rate of states", digits),
-                 {},
-                 "state/500 is 500 a second of simulation time, state/0 every step"};
+    return Error{
+        ErrorKind::kUsage,
+        fmt::format("'{}' is not a state rate", digits),
+        {},
+        "use state/500 for 500 states per second of simulation time, state/0 for every step"};
   return Rational{rate, 1};
 }
 
