@@ -44,7 +44,7 @@ Error no_field(std::string_view name, const std::vector<SchemaField>& fields) {
 Error other_kind(std::string_view path, const SchemaField& field, std::string_view wanted) {
   const bool is_message = field.type.kind == FieldKind::kMessage;
   return {.message = fmt::format(
-              "'{}' has type {}{}, expected {}", path,
+              "'{}' is {}{}, not {}", path,
               is_message ? field.type.message : std::string(field_kind_name(field.type.kind)),
               field.type.array == ArrayKind::kNone ? "" : "[]", wanted)};
 }
@@ -153,7 +153,7 @@ Result<std::vector<double>> DynamicMessage::numbers(std::string_view path) const
   std::vector<double> numbers;
   if (!collect_numbers(*schema_, &place.reader, place.field, &numbers)) {
     if (!place.reader.ok()) return place.reader.error();
-    return other_kind(path, place.field, "only numbers");
+    return other_kind(path, place.field, "a list of numbers");
   }
   return numbers;
 }

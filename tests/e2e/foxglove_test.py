@@ -170,7 +170,7 @@ class Live(FoxgloveTest):
 
     def test_watchers_are_told_that_they_watch(self):
         watcher = self.connect(self.served.watch_url)
-        with self.assertRaisesRegex(RuntimeError, "watching"):
+        with self.assertRaisesRegex(RuntimeError, "can only watch"):
             watcher.call("/pause")
         for headers in (["Origin: https://app.foxglove.dev"], ["Origin: null"]):
             with self.assertRaisesRegex(Refused, "403"):

@@ -215,7 +215,7 @@ class Volumes(HostileTest):
 
     def test_that_claim_more_than_they_hold(self):
         self.npy((64, 64, 64), size=100)
-        self.refuses(LAMP + self.VOLUME, "a.npy", "its shape needs")
+        self.refuses(LAMP + self.VOLUME, "a.npy", "its shape requires")
         self.npy((1 << 40, 1 << 40, 1 << 40), size=100)
         self.refuses(LAMP + self.VOLUME, "a.npy", "limit")
 
@@ -335,7 +335,7 @@ class Roots(ProgramTest):
         self.gloam("convert", file, "--colliders", "hull")
         self.gloam("convert", file, "--colliders", "hull", "--root", self.folder)
         for options in (["--strict"], ["--root", self.folder / "model"]):
-            self.assertIn("leads out of the folder", self.gloam("convert", file, "--colliders", "hull", *options, expect=1).stderr)
+            self.assertIn("leads outside of the folder", self.gloam("convert", file, "--colliders", "hull", *options, expect=1).stderr)
         self.assertIn("given with --root", self.gloam("convert", file, "--root", self.folder / "elsewhere", expect=1).stderr)
 
     def test_are_told_of_by_info(self):

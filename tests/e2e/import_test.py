@@ -81,8 +81,8 @@ class Rooms(ProgramTest):
         self.write("ball.xml", BALL)
         scene = self.write("s.toml", "[environment]\nfile = 'room.obj'\n[[robot]]\nname = 'go'\nfile = 'ball.xml'\nposition = [2, 2, 0.1]\n")
         result = self.gloam("run", scene, "--duration", "1", "--output", "metrics", "--out", "run")
-        self.assertIn("'room' looks inwards: it is a room", result.stderr)
-        self.assertNotIn("robot 'go' starts", result.stderr)
+        self.assertIn("'room' faces inwards: it is treated as a room", result.stderr)
+        self.assertNotIn("starts", result.stderr)
 
 
 class Convert(ProgramTest):

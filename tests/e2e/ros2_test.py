@@ -114,7 +114,7 @@ class Ros2(unittest.TestCase):
             self.assertEqual(first.returncode, 0, errors)
             way = json.loads(out)
         self.assertGreater(way["to"][0] - way["from"][0], 0.3, way)
-        self.assertIn("obeys another publisher", self.errors)
+        self.assertIn("is controlled by another publisher", self.errors)
 
     def test_sim_time_and_two_simulators_in_two_domains(self):
         other = next(DOMAINS)

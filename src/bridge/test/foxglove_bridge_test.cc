@@ -145,7 +145,7 @@ TEST_F(FoxgloveBridgeTest, SpeaksTheProtocolThatTheClientPrefers) {
       return false;
     };
     EXPECT_TRUE(has("time") && has("services") && has("assets") && has("parametersSubscribe"));
-    EXPECT_FALSE(has("playbackControl")) << "no log is played";
+    EXPECT_FALSE(has("playbackControl")) << "no log is being replayed";
   }
   const auto v11 = newest.wait_for("advertise"), v1 = older.wait_for("advertise");
   ASSERT_TRUE(v11 && v1);

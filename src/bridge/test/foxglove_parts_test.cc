@@ -194,10 +194,10 @@ TEST(FoxgloveJson, WhatLacksIsZeroAndWhatIsWrongIsNamed) {
   };
   EXPECT_EQ(fault({{"linear_acceleration", {{"q", 1}}}}), "'linear_acceleration' has no field 'q'");
   EXPECT_EQ(fault({{"header", {{"stamp", {{"sec", 0.5}}}}}}),
-            "'header.stamp.sec' must be a whole number of its range");
+            "'header.stamp.sec' must be an integer within the range of its type");
   EXPECT_EQ(fault({{"header", {{"stamp", {{"nanosec", -1}}}}}}),
-            "'header.stamp.nanosec' must be a whole number of its range");
-  EXPECT_EQ(fault({{"header", {{"frame_id", 1}}}}), "'header.frame_id' must be text");
+            "'header.stamp.nanosec' must be an integer within the range of its type");
+  EXPECT_EQ(fault({{"header", {{"frame_id", 1}}}}), "'header.frame_id' must be a string");
   EXPECT_EQ(fault({{"orientation_covariance", {1, 2}}}),
             "'orientation_covariance' must have 9 elements");
   EXPECT_EQ(fault(json::array()), "the message must be an object");

@@ -72,7 +72,7 @@ TEST_F(OperatorTest, StepsTellHowFarTheyAreAndCanBeStopped) {
   while (simulation_->latest().step() < 2000) std::this_thread::yield();
   EXPECT_EQ(op().state(), RunState::kPaused);
   expect_error(op().step(1), ErrorKind::kUsage, "");
-  expect_error(op().play(), ErrorKind::kUsage, "steps are being taken");
+  expect_error(op().play(), ErrorKind::kUsage, "the simulation is stepping");
   expect_ok(op().pause());
   stepper.join();
   expect_ok(op().step(1));
@@ -372,7 +372,7 @@ TEST_F(OperatorTest, ChangesLiveFields) {
 TEST_F(OperatorTest, RecordsTakesPicturesAndGoesBack) {
   const Result<std::string> log = op().start_recording("run");
   ASSERT_TRUE(log.ok()) << log.error().to_string();
-  expect_error(op().start_recording("two"), ErrorKind::kUsage, "being written");
+  expect_error(op().start_recording("two"), ErrorKind::kUsage, "already being recorded");
   expect_ok(op().step(50));
   EXPECT_EQ(op().stop_recording().value(), *log);
   EXPECT_TRUE(describe_log(*log).value().has_run);

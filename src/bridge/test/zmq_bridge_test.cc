@@ -327,7 +327,7 @@ TEST_F(ZmqBridgeTest, TheAddressFileIsPrivateAndGoesWithTheServer) {
   bridge_.reset();
   EXPECT_FALSE(std::filesystem::exists(file));
   std::filesystem::permissions(file.parent_path(), std::filesystem::perms(0755));
-  EXPECT_THAT(start().error().message, HasSubstr("open to others"));
+  EXPECT_THAT(start().error().message, HasSubstr("accessible by others"));
 }
 
 TEST_F(ZmqBridgeTest, APortInUseAndTheOpenNetworkAreRefused) {

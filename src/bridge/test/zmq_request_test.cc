@@ -79,20 +79,20 @@ TEST_F(ZmqBridgeTest, LongRequestsNeedTheTokenBeforeTheyAreRead) {
         token));
     const auto reply = client.receive();
     ASSERT_TRUE(reply);
-    EXPECT_THAT((*reply)["error"].to_string(), HasSubstr("needs the token"));
+    EXPECT_THAT((*reply)["error"].to_string(), HasSubstr("requires the token"));
   }
   client.call("ping");
 }
 
 TEST(ZmqRequest, OfAnotherFormIsRefused) {
-  EXPECT_THAT(parse_error({}), HasSubstr("cut off"));
-  EXPECT_THAT(parse_error_of([](Packer& p) { p.pack(3); }), HasSubstr("no map"));
-  EXPECT_THAT(parse_error_of([](Packer& p) { p.pack_map(0); }), HasSubstr("names no 'op'"));
+  EXPECT_THAT(parse_error({}), HasSubstr("truncated"));
+  EXPECT_THAT(parse_error_of([](Packer& p) { p.pack(3); }), HasSubstr("not a map"));
+  EXPECT_THAT(parse_error_of([](Packer& p) { p.pack_map(0); }), HasSubstr("request has no 'op'"));
   EXPECT_THAT(parse_error_of([](Packer& p) {
                 p.pack_map(1);
                 pack_pair(p, "op", 3);
               }),
-              HasSubstr("'op' is no text"));
+              HasSubstr("'op' is not a string"));
   EXPECT_THAT(parse_error_of([](Packer& p) {
                 p.pack_map(2);
                 pack_pair(p, "op", std::string("a"));
@@ -104,13 +104,13 @@ TEST(ZmqRequest, OfAnotherFormIsRefused) {
                 pack_pair(p, "op", std::string("a"));
                 pack_pair(p, "arg", 1);
               }),
-              HasSubstr("has no 'arg'"));
+              HasSubstr("unknown request key 'arg'"));
   EXPECT_THAT(parse_error_of([](Packer& p) {
                 p.pack_map(2);
                 pack_pair(p, "op", std::string("a"));
                 pack_pair(p, "args", 1);
               }),
-              HasSubstr("'args' is no map"));
+              HasSubstr("'args' is not a map"));
   EXPECT_THAT(parse_error_of([](Packer& p) {
                 p.pack_map(2);
                 pack_pair(p, "op", std::string("a"));
@@ -127,7 +127,7 @@ TEST(ZmqRequest, OfAnotherFormIsRefused) {
                 pack_pair(p, "op", std::string("a"));
                 p.pack(1);
               }),
-              HasSubstr("more bytes than one"));
+              HasSubstr("extra bytes after"));
 }
 
 // A header that promises 2^32 elements must not take memory for them.
@@ -141,7 +141,7 @@ TEST(ZmqRequest, BombsAreRefused) {
   EXPECT_NE(parse_error(text), "");
   EXPECT_NE(parse_error(extension), "");
   const std::vector<uint8_t> deep(100000, 0x91);
-  EXPECT_THAT(parse_error(deep), HasSubstr("nested deeper"));
+  EXPECT_THAT(parse_error(deep), HasSubstr("nested more than"));
   EXPECT_THAT(parse_error(std::vector<uint8_t>(kMaxRequestBytes + 1)), HasSubstr("bytes"));
 }
 
@@ -199,7 +199,7 @@ TEST_F(ZmqArguments, AreCheckedAgainstTheirList) {
                       pack_pair(p, "speed", 1);
                       pack_pair(p, "where", std::vector<double>{1, 2});
                     }),
-              HasSubstr("has 2 numbers, not 3"));
+              HasSubstr("has 2 numbers, expected 3"));
   EXPECT_THAT(check(2,
                     [](Packer& p) {
                       pack_pair(p, "speed", 1);

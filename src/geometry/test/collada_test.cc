@@ -152,7 +152,7 @@ TEST(Collada, PicturesAreFoundBesideTheFileAndNowhereElse) {
     EXPECT_EQ(model->images.size(), 1u) << name;
     EXPECT_EQ(model->materials.at(0).base_color_texture.image, 0);
   }
-  EXPECT_THAT(error_of(read("../red.png")), HasSubstr("leads out of the folder"));
+  EXPECT_THAT(error_of(read("../red.png")), HasSubstr("leads outside of the folder"));
   EXPECT_TRUE(read("none.png")->images.empty());
 }
 
@@ -161,17 +161,17 @@ TEST(Collada, DamageIsToldWithItsLine) {
   for (size_t n = 0; n < whole.size(); n += 7)
     EXPECT_FALSE(read_text(whole.substr(0, n), "a.dae").ok());
   EXPECT_THAT(error_for(dae("", kTriangle, "<node><instance_geometry url='#h'/></node>")),
-              HasSubstr("names the geometry '#h', which is not in the file"));
+              HasSubstr("refers to geometry '#h', which is not in the file"));
   EXPECT_THAT(error_for(dae("",
                             "<triangles><input semantic='VERTEX' source='#v' offset='0'/>"
                             "<p>0 1 9</p></triangles>",
                             kNode)),
-              HasSubstr("a.dae:4: <triangles> uses element 9 of a source of 4"));
+              HasSubstr("a.dae:4: <triangles> refers to element 9 of a source with 4 elements"));
   EXPECT_THAT(error_for(dae("",
                             "<triangles><input semantic='VERTEX' source='#v' offset='0'/>"
                             "<p>0 1 x</p></triangles>",
                             kNode)),
-              HasSubstr("'x', which is no index"));
+              HasSubstr("'x', which is not a valid index"));
   // A node that holds itself, and nodes whose copies double at every level.
   EXPECT_THAT(error_for(dae("", kTriangle, "<node id='a'><instance_node url='#a'/></node>")),
               HasSubstr("its own ancestor"));
@@ -181,7 +181,7 @@ TEST(Collada, DamageIsToldWithItsLine) {
         fmt::format("<node id='b{}'><instance_node url='#b{}'/><instance_node url='#b{}'/></node>",
                     i, i + 1, i + 1);
   EXPECT_THAT(error_for(dae("", kTriangle, nodes + "<node id='b60'/>")),
-              HasSubstr("one node too many"));
+              HasSubstr("exceeds the limit on nodes"));
   EXPECT_FALSE(read_text("<COLLADA>" + std::string(10, '<') + "</COLLADA>", "a.dae").ok());
 }
 
@@ -251,7 +251,8 @@ TEST(GltfExtensions, InstancesArePlacedAndUnknownOnesAreTold) {
   expect_near(place(model, {1, 0, 0}, 1), {-2, 0, 2});
   EXPECT_THAT(model.notes, ElementsAre(HasSubstr("'VENDOR_glitter'")));
   gltf.json["extensionsRequired"] = {"VENDOR_glitter"};
-  EXPECT_THAT(error_for(gltf.gltf(), "a.gltf"), HasSubstr("requires 'VENDOR_glitter'"));
+  EXPECT_THAT(error_for(gltf.gltf(), "a.gltf"),
+              HasSubstr("requires the extension 'VENDOR_glitter'"));
 }
 
 // --- text as it comes ---

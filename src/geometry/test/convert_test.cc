@@ -270,7 +270,7 @@ double clearance(const Converted& room, Vec3d p) {
 TEST(ConvertRoom, HasWallsFloorAndCeilingAndAirWithin) {
   const Converted room = converted_room(room_of({{0, 0}, {5, 0}, {5, 4}, {0, 4}}, 2.5f));
   EXPECT_TRUE(room.is_room);
-  EXPECT_THAT(room.notes, ElementsAre(HasSubstr("it is a room")));
+  EXPECT_THAT(room.notes, ElementsAre(HasSubstr("treated as a room")));
   EXPECT_EQ(room.colliders.size(), 6u);
   EXPECT_NEAR(clearance(room, {2.5, 2, 1.25}), 1.25, 1e-4);
   EXPECT_NEAR(clearance(room, {0.1, 2, 1}), 0.1, 1e-4);
@@ -409,7 +409,7 @@ TEST(Convert, RefusesWhatIsNoMesh) {
   EXPECT_THAT(error(mesh), HasSubstr("no triangles"));
   mesh.positions = {{0, 0, 0}, {1, 0, 0}, {NAN, 1, 0}};
   mesh.indices = {0, 1, 2};
-  EXPECT_THAT(error(mesh), HasSubstr("no number"));
+  EXPECT_THAT(error(mesh), HasSubstr("not a number"));
 }
 
 TEST(Convert, RefusesWhatIsTooFarAway) {

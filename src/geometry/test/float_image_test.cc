@@ -102,7 +102,8 @@ TEST(Exr, ChannelsBecomeTexels) {
   EXPECT_THAT(image->texels, ElementsAre(0.5f, 2));
   image = decode_float_image(as_bytes(exr_file(1, 1, {"Q", "Z"}, {{0}, {1}})), "a.exr");
   ASSERT_FALSE(image.ok());
-  EXPECT_THAT(image.error().to_string(), HasSubstr("neither R, G and B nor one grey channel"));
+  EXPECT_THAT(image.error().to_string(),
+              HasSubstr("neither R, G and B channels nor a single grey channel"));
   for (size_t n = 0; n < color.size(); ++n)
     EXPECT_FALSE(decode_float_image(as_bytes(color.substr(0, n)), "a.exr").ok()) << n;
 }
@@ -151,11 +152,11 @@ TEST(Ktx, DamageIsNamed) {
     return image.ok() ? "" : image.error().to_string();
   };
   EXPECT_THAT(error(16, 0), HasSubstr("it is compressed"));
-  EXPECT_THAT(error(36, 5000), HasSubstr("it ends too early"));
+  EXPECT_THAT(error(36, 5000), HasSubstr("it is truncated"));
   EXPECT_THAT(error(36, 0xffffffff), HasSubstr("its size is"));
   EXPECT_THAT(error(44, 4), HasSubstr("3-D"));
-  EXPECT_THAT(error(52, 6), HasSubstr("it ends too early"));
-  EXPECT_THAT(error(60, 0xfffffff0), HasSubstr("it ends too early"));
+  EXPECT_THAT(error(52, 6), HasSubstr("it is truncated"));
+  EXPECT_THAT(error(60, 0xfffffff0), HasSubstr("it is truncated"));
 }
 
 TEST(SmallFloat, HalvesAreIeees) {

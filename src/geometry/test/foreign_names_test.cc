@@ -63,7 +63,7 @@ TEST(ForeignNames, OfFilesInGltfAreFound) {
   }
   const auto path = folder.write("m.gltf", file.gltf_with_file("..%5Coutside.bin"));
   folder.write("../outside.bin", "x");
-  EXPECT_THAT(error_of(read_model_file(path)), HasSubstr("leads out of the folder"));
+  EXPECT_THAT(error_of(read_model_file(path)), HasSubstr("leads outside of the folder"));
   std::filesystem::remove(folder.path / "../outside.bin");
 }
 
@@ -135,9 +135,9 @@ TEST(MtlKeywords, ThatAreUnknownAreNoted) {
                "newmtl a\nKa 1 1 1\nmap_Kdd two.png\nrefl two.png\nmap_Kd -wrap x t.png\n");
   const Result<ModelFile> model = read_model_file(folder.write("m.obj", kObj));
   ASSERT_TRUE(model.ok()) << error_of(model);
-  EXPECT_THAT(model->notes, Contains("'map_kdd' of the material library is left out"));
-  EXPECT_THAT(model->notes, Contains("'refl' of the material library is left out"));
-  EXPECT_THAT(model->notes, Contains("the option '-wrap' of a picture is left out"));
+  EXPECT_THAT(model->notes, Contains("'map_kdd' in the material library is ignored"));
+  EXPECT_THAT(model->notes, Contains("'refl' in the material library is ignored"));
+  EXPECT_THAT(model->notes, Contains("image option '-wrap' is ignored"));
   EXPECT_THAT(model->notes, testing::Not(Contains(HasSubstr("'ka'"))));
 }
 

@@ -183,10 +183,10 @@ TEST(GltfMaterial, EmbeddedPicturesAreKeptAsTheyAre) {
 
 TEST(GltfMaterial, ReferencesToNothingAreRefused) {
   EXPECT_THAT(error_of(read_material({{"normalTexture", {{"index", 2}}}})),
-              HasSubstr("/materials/0/normalTexture/index: names texture 2, but there are 2"));
+              HasSubstr("/materials/0/normalTexture/index: refers to texture 2, but there are 2"));
   EXPECT_THAT(error_of(read_material({{"normalTexture", json::object()}})),
               HasSubstr("is missing"));
-  EXPECT_THAT(error_of(read_material({{"alphaMode", "GLASS"}})), HasSubstr("none of OPAQUE"));
+  EXPECT_THAT(error_of(read_material({{"alphaMode", "GLASS"}})), HasSubstr("one of OPAQUE"));
   EXPECT_THAT(error_of(read_material({{"extensions", {{"KHR_materials_ior", {{"ior", 0.5}}}}}})),
               HasSubstr("must be 0 or at least 1"));
 }

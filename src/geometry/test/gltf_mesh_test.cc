@@ -65,7 +65,7 @@ TEST(GltfMesh, StripsAndFansKeepTheWinding) {
   ASSERT_EQ(model.meshes.size(), 2u);
   EXPECT_THAT(model.meshes[0].indices, ElementsAre(0, 1, 2, 1, 3, 2, 2, 3, 4));
   EXPECT_THAT(model.meshes[1].indices, ElementsAre(1, 2, 0, 2, 3, 0, 3, 4, 0));
-  EXPECT_THAT(model.notes, ElementsAre("points and lines are left out"));
+  EXPECT_THAT(model.notes, ElementsAre("points and lines are ignored"));
 }
 
 TEST(GltfMesh, ComponentsOfEveryTypeAreReadAndNormalised) {
@@ -267,19 +267,20 @@ TEST(GltfErrors, NumbersOutsideTheirRangesAreRefused) {
     file.json[json::json_pointer(pointer)] = value;
     return error_for(file);
   };
-  EXPECT_THAT(with("/nodes/0/mesh", 7), HasSubstr("/nodes/0/mesh: names mesh 7, but there are 1"));
+  EXPECT_THAT(with("/nodes/0/mesh", 7),
+              HasSubstr("/nodes/0/mesh: refers to mesh 7, but there are 1"));
   EXPECT_THAT(with("/nodes/0/mesh", -1), HasSubstr("/nodes/0/mesh: is -1"));
-  EXPECT_THAT(with("/nodes/0/mesh", 0.5), HasSubstr("whole number"));
+  EXPECT_THAT(with("/nodes/0/mesh", 0.5), HasSubstr("an integer"));
   EXPECT_THAT(with("/nodes/0/mesh", "0"), HasSubstr("must be a number, not string"));
-  EXPECT_THAT(with("/nodes/0/scale", {1, 2}), HasSubstr("/nodes/0/scale: must hold 3 numbers"));
+  EXPECT_THAT(with("/nodes/0/scale", {1, 2}), HasSubstr("/nodes/0/scale: must contain 3 numbers"));
   EXPECT_THAT(with("/nodes/0/scale", {1, 2, 1e300}), HasSubstr("/nodes/0/scale/2"));
-  EXPECT_THAT(with("/nodes/0/rotation", {0, 0, 0, 0}), HasSubstr("no rotation"));
+  EXPECT_THAT(with("/nodes/0/rotation", {0, 0, 0, 0}), HasSubstr("not a rotation"));
   EXPECT_THAT(with("/accessors/0/count", 4), HasSubstr("do not fit into buffer view 0"));
   EXPECT_THAT(with("/accessors/0/count", 1e12), HasSubstr("the limit is"));
-  EXPECT_THAT(with("/accessors/0/componentType", 5124), HasSubstr("no component type"));
+  EXPECT_THAT(with("/accessors/0/componentType", 5124), HasSubstr("not a component type"));
   EXPECT_THAT(with("/accessors/0/byteOffset", 9e15), HasSubstr("do not fit"));
-  EXPECT_THAT(with("/bufferViews/0/byteOffset", 9e15), HasSubstr("lie outside buffer 0"));
-  EXPECT_THAT(with("/bufferViews/0/byteStride", 4), HasSubstr("less than an element"));
+  EXPECT_THAT(with("/bufferViews/0/byteOffset", 9e15), HasSubstr("outside of buffer 0"));
+  EXPECT_THAT(with("/bufferViews/0/byteStride", 4), HasSubstr("but an element has"));
   EXPECT_THAT(with("/asset/version", "1.0"), HasSubstr("only glTF 2"));
   EXPECT_THAT(with("/materials", {{{"pbrMetallicRoughness", {{"roughnessFactor", 2}}}}}),
               HasSubstr("/materials/0/pbrMetallicRoughness/roughnessFactor: is 2"));
@@ -305,7 +306,7 @@ TEST(GltfErrors, DeepAndCrowdedJsonIsRefusedBeforeItIsParsed) {
   const std::string crowded = "{\"asset\":[" + std::string(kMaxJsonValues, ',') + "]}";
   EXPECT_THAT(error_of(read_text(crowded, "a.gltf")), HasSubstr("values; the limit is"));
   EXPECT_THAT(error_of(read_text("{\"asset\": {\"version\": ", "a.gltf")),
-              HasSubstr("not JSON: damaged at byte"));
+              HasSubstr("not JSON: syntax error at byte"));
 }
 
 TEST(GltfErrors, OneAccessorUsedByManyPrimitivesMeetsTheMemoryLimit) {
@@ -317,7 +318,7 @@ TEST(GltfErrors, OneAccessorUsedByManyPrimitivesMeetsTheMemoryLimit) {
   ModelFileOptions options;
   options.limits.decoded_bytes = 1 << 20;
   EXPECT_THAT(error_of(read_text(file.gltf(), "a.gltf", options)),
-              HasSubstr("unpacks to more than the limit"));
+              HasSubstr("exceed the size limit when decoded"));
 }
 
 TEST(GltfErrors, ACutGlbIsRefusedAtEveryLength) {
@@ -351,7 +352,7 @@ TEST(GltfFiles, BuffersAndImagesAreReadFromBesideTheModelOnly) {
     folder.write("model/m.gltf", file.gltf_with_file(uri));
     const std::string error = error_of(read_model_file(path));
     EXPECT_THAT(error,
-                testing::AnyOf(HasSubstr("leads out of the folder"),
+                testing::AnyOf(HasSubstr("leads outside of the folder"),
                                HasSubstr("is an absolute path"), HasSubstr("network address")))
         << uri;
     EXPECT_THAT(error, HasSubstr("/buffers/0"));
@@ -361,12 +362,12 @@ TEST(GltfFiles, BuffersAndImagesAreReadFromBesideTheModelOnly) {
   folder.write("model/m.gltf", file.gltf_with_file("../secret.bin"));
   EXPECT_TRUE(read_model_file(path, wide).ok());
   wide.root = folder.path / "elsewhere";
-  EXPECT_THAT(error_of(read_model_file(path, wide)), HasSubstr("is not inside the folder"));
+  EXPECT_THAT(error_of(read_model_file(path, wide)), HasSubstr("is outside of the root folder"));
   folder.write("model/m.gltf", file.gltf_with_file("missing.bin"));
   EXPECT_THAT(error_of(read_model_file(path)), HasSubstr("'missing.bin' is missing"));
   folder.write("model/data.bin", "short");
   folder.write("model/m.gltf", file.gltf_with_file("data.bin"));
-  EXPECT_THAT(error_of(read_model_file(path)), HasSubstr("is to have 36 bytes and has 5"));
+  EXPECT_THAT(error_of(read_model_file(path)), HasSubstr("must have 36 bytes, but has 5"));
 }
 
 }  // namespace

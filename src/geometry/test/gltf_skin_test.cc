@@ -133,7 +133,8 @@ TEST_F(GltfSkin, RefusesJointsAndMatricesThatAreNotThere) {
   const int mesh = add_skinned_mesh({0, 3, 0, 0, 0, 0});
   file_.push("nodes", json::object());
   file_.push("nodes", {{"mesh", mesh}, {"skin", add_skin({0}, {})}});
-  EXPECT_THAT(error_of(read_text(file_.gltf(), "a.gltf")), HasSubstr("names a joint beyond its 1"));
+  EXPECT_THAT(error_of(read_text(file_.gltf(), "a.gltf")),
+              HasSubstr("refers to a joint that is out of range; there are 1"));
   file_.json["skins"][0]["joints"] = {0, 1};
   file_.json["skins"][0]["inverseBindMatrices"] =
       file_.add_accessor(scale_and_shift(1, {}), "MAT4", 5126, 1);

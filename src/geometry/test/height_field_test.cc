@@ -73,7 +73,8 @@ TEST(HeightGrid, RefusesWhatIsEmptyOrTooLarge) {
   };
   EXPECT_EQ(complaint({0, 1}, {1, 1}, 0.1), "the region is empty: y from 1 to 1 m");
   EXPECT_EQ(complaint({0, NAN}, {1, 1}, 0.1), "the region is empty: y from nan to 1 m");
-  EXPECT_NE(complaint({0, 0}, {1e9, 1e9}, 1e-4).find("are more than 16777216"), std::string::npos);
+  EXPECT_NE(complaint({0, 0}, {1e9, 1e9}, 1e-4).find("exceed the limit of 16777216"),
+            std::string::npos);
 }
 
 TEST(SampleFloors, OfAPlaneAreExact) {
@@ -152,10 +153,10 @@ TEST(SampleFloors, RefuseWhatWouldTakeForever) {
   const HeightGrid grid = grid_over(-5, 5, 0.1);
   EXPECT_TRUE(sample_floors({&placed, 1}, grid, 1).ok());
   EXPECT_EQ(sample_floors({&placed, 1}, grid, 2).error().message,
-            "more than 64 surfaces lie over one another");
+            "more than 64 surfaces lie above one another");
   for (int i = 0; i < 3000; ++i) add_box({-9, -9, -1}, {9, 9, 1}, &mesh);
   EXPECT_EQ(sample_floors({&placed, 1}, grid, 1).error().message,
-            "more than 1024 surfaces lie over one another");
+            "more than 1024 surfaces lie above one another");
 }
 
 TEST(SampleFloors, OfAMirroredMeshFaceTheSameWay) {
@@ -176,7 +177,7 @@ TEST(GroundOf, FillsFromTheLowestNeighbourRingByRing) {
   EXPECT_EQ(field.z, std::vector<float>({4, 4, 2, 2, 2}));
   EXPECT_EQ(field.filled, 3);
   floors.z.assign(5, NAN);
-  EXPECT_EQ(ground_of(floors).error().message, "no sample of the region has a surface under it");
+  EXPECT_EQ(ground_of(floors).error().message, "no sample of the region has a surface below it");
 }
 
 TEST(SampleFloors, MeetNothingOfVerticalWalls) {

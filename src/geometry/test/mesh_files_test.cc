@@ -168,7 +168,7 @@ TEST(Obj, MaterialsAndPicturesComeFromTheLibrary) {
   const Vec2f uv = transform_uv(modern.base_color_texture.transform, {0.25f, 0.5f});
   EXPECT_FLOAT_EQ(uv.x, 2 * 0.25f + 0.5f);
   EXPECT_FLOAT_EQ(uv.y, 3 * 0.5f + 0.25f);
-  EXPECT_THAT(model->notes, ElementsAre("the picture 'tex/gone.png' is missing"));
+  EXPECT_THAT(model->notes, ElementsAre("image 'tex/gone.png' is missing"));
   ASSERT_EQ(model->images.size(), 1u);
   EXPECT_EQ(model->images[0].bytes, (std::vector<uint8_t>{'w', 'o', 'o', 'd'}));
 
@@ -185,7 +185,7 @@ TEST(Obj, MaterialsAndPicturesComeFromTheLibrary) {
   std::filesystem::remove(folder.path / "m.mtl");
   const Result<ModelFile> without = read_model_file(path);
   ASSERT_TRUE(without.ok()) << error_of(without);
-  EXPECT_THAT(without->notes, testing::Contains("the material library 'm.mtl' is missing"));
+  EXPECT_THAT(without->notes, testing::Contains("material library 'm.mtl' is missing"));
 }
 
 TEST(Obj, ErrorsNameTheLine) {
@@ -193,10 +193,11 @@ TEST(Obj, ErrorsNameTheLine) {
   EXPECT_THAT(error_for(start + "f 1 2 4\n", "a.obj"), HasSubstr("a.obj:4: the face uses"));
   EXPECT_THAT(error_for(start + "f 1 2 -4\n", "a.obj"), HasSubstr("a.obj:4: the face uses"));
   EXPECT_THAT(error_for(start + "f 1/1 2/1 3/1\n", "a.obj"), HasSubstr("there are 3, 0 and 0"));
-  EXPECT_THAT(error_for(start + "f 0 1 2\n", "a.obj"), HasSubstr("'0' is no corner of a face"));
-  EXPECT_THAT(error_for(start + "f 1 2 99999999999\n", "a.obj"), HasSubstr("no corner"));
-  EXPECT_THAT(error_for(start + "v 1 x 2\n", "a.obj"), HasSubstr("a.obj:4: 'x' is no number"));
-  EXPECT_THAT(error_for(start + "v 1 2\n", "a.obj"), HasSubstr("3 numbers are needed"));
+  EXPECT_THAT(error_for(start + "f 0 1 2\n", "a.obj"), HasSubstr("'0' is not a valid face corner"));
+  EXPECT_THAT(error_for(start + "f 1 2 99999999999\n", "a.obj"),
+              HasSubstr("not a valid face corner"));
+  EXPECT_THAT(error_for(start + "v 1 x 2\n", "a.obj"), HasSubstr("a.obj:4: 'x' is not a number"));
+  EXPECT_THAT(error_for(start + "v 1 2\n", "a.obj"), HasSubstr("expected 3 numbers"));
   EXPECT_THAT(error_for("v nan 0 0\n" + start + "f 1 2 3\n", "a.obj"),
               HasSubstr("position of vertex 0 is not finite"));
   EXPECT_THAT(error_for("v 1e99 0 0\n" + start + "f 1 2 3\n", "a.obj"), HasSubstr("not finite"));
@@ -270,14 +271,14 @@ TEST(Stl, LongTextsReadThePiecesInOrder) {
 TEST(Stl, DamageIsNamed) {
   const std::string whole = binary_stl(kTetra);
   EXPECT_THAT(error_for(whole.substr(0, 100), "a.stl"),
-              HasSubstr("names 4 triangles, but it has room for 0"));
+              HasSubstr("declares 4 triangles, but it has room for 0"));
   std::string huge = whole;
   std::memset(huge.data() + 80, 0xff, 4);
-  EXPECT_THAT(error_for(huge, "a.stl"), HasSubstr("names 4294967295 triangles"));
+  EXPECT_THAT(error_for(huge, "a.stl"), HasSubstr("declares 4294967295 triangles"));
   std::string text = ascii_stl(kTetra);
   EXPECT_THAT(error_for(text.substr(0, text.find("endloop")), "a.stl"), HasSubstr("ends within"));
   EXPECT_THAT(error_for("solid\nfacet\nouter loop\nvertex 1 2 z\n", "a.stl"),
-              HasSubstr("a.stl:4: 'z' is no number"));
+              HasSubstr("a.stl:4: 'z' is not a number"));
   EXPECT_THAT(error_for("solid\nfacet\nouter loop\nvertex 1 2 3\nendloop\n", "a.stl"),
               HasSubstr("has 1 corners, not 3"));
   std::vector<Vec3f> bad = kTetra;
@@ -361,15 +362,15 @@ TEST(Ply, DamageIsNamed) {
     return error_for(file, "a.ply");
   };
   EXPECT_THAT(with(whole, "vertex 4", "vertex 1099511627776"),
-              HasSubstr("names 1099511627776 elements 'vertex'"));
-  EXPECT_THAT(with(text, "vertex 4", "vertex 1099511627776"), HasSubstr("bytes follow its head"));
+              HasSubstr("declares 1099511627776 elements 'vertex'"));
+  EXPECT_THAT(with(text, "vertex 4", "vertex 1099511627776"), HasSubstr("bytes follow its header"));
   EXPECT_THAT(with(text, "0 2 1\n", "0 2 4\n"), HasSubstr("a.ply:29: the face uses vertex '4'"));
   EXPECT_THAT(with(text, "0.5 0 -3", "0.5 nan -3"), HasSubstr("vertex 1 is not finite"));
-  EXPECT_THAT(with(text, "0.5 0 -3", "0.5 q -3"), HasSubstr("a.ply:24: 'q' is no number"));
+  EXPECT_THAT(with(text, "0.5 0 -3", "0.5 q -3"), HasSubstr("a.ply:24: 'q' is not a number"));
   EXPECT_THAT(with(text, "property short z", "property short w"), HasSubstr("no x, y and z"));
   EXPECT_THAT(with(text, "property short z", "property real z"), HasSubstr("'real' is unknown"));
   EXPECT_THAT(with(text, "format ascii", "format utf8"), HasSubstr("'utf8' is unknown"));
-  EXPECT_THAT(with(text, "end_header", "end"), HasSubstr("'end' does not belong"));
+  EXPECT_THAT(with(text, "end_header", "end"), HasSubstr("unexpected 'end' in the header"));
 }
 
 // --- all ---
@@ -377,7 +378,7 @@ TEST(Ply, DamageIsNamed) {
 TEST(ModelFile, TheFormatIsToldByContent) {
   EXPECT_EQ(read_ok(ascii_ply(), "wrong.obj").meshes.size(), 1u);
   EXPECT_THAT(error_for("hello", "a.txt"),
-              HasSubstr("is none of glTF, GLB, COLLADA, OBJ, STL and PLY"));
+              HasSubstr("is not a glTF, GLB, COLLADA, OBJ, STL or PLY file"));
   EXPECT_THAT(error_of(read_model_file("/no/such/file.glb")), HasSubstr("no such file"));
 }
 

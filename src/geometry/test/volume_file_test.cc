@@ -59,7 +59,7 @@ TEST(VolumeFile, SaysWhatIsWrong) {
   for (const char* shape : {"1,", "1, 1", "1, 1, 1, 1", "", "a, b, c", "-1, 1, 1"})
     EXPECT_THAT(message(npy_file(npy_head(shape), one)), HasSubstr("three axes")) << shape;
   EXPECT_THAT(message(npy_file(npy_head("1, 0, 1"), "")), HasSubstr("no voxels"));
-  EXPECT_THAT(message(npy_file(npy_head("1, 1, 2"), one)), HasSubstr("its shape needs"));
+  EXPECT_THAT(message(npy_file(npy_head("1, 1, 2"), one)), HasSubstr("its shape requires"));
   EXPECT_THAT(message(npy_file("{}", one)), HasSubstr("little-endian"));
   for (const float bad : {-1.0f, std::nanf(""), std::numeric_limits<float>::infinity()}) {
     EXPECT_THAT(message(npy_file(npy_head("1, 1, 1"), npy_values(std::vector<float>{bad}))),

@@ -124,11 +124,11 @@ TEST(Cdr, ViewsAreEncodedAsTheBytesTheyShow) {
 }
 
 TEST(Cdr, RefusesOtherHeads) {
-  EXPECT_THAT(decode_error<std_msgs::Header>({}), HasSubstr("shorter than the head"));
+  EXPECT_THAT(decode_error<std_msgs::Header>({}), HasSubstr("shorter than the header"));
   for (const Buffer& head : {Buffer{0, 2}, Buffer{0, 3}, Buffer{0, 7}, Buffer{1, 1}}) {
     Buffer bytes = kHeader;
     std::ranges::copy(head, bytes.begin());
-    EXPECT_THAT(decode_error<std_msgs::Header>(bytes), HasSubstr("not that of plain CDR"));
+    EXPECT_THAT(decode_error<std_msgs::Header>(bytes), HasSubstr("not a plain CDR header"));
   }
 }
 
@@ -137,13 +137,13 @@ TEST(Cdr, NamesTheFieldThatIsDamaged) {
   bytes.resize(10);
   EXPECT_THAT(decode_error<std_msgs::Header>(bytes),
               AllOf(HasSubstr("std_msgs/msg/Header"), HasSubstr("byte 8 in stamp.nanosec"),
-                    HasSubstr("ends too soon")));
+                    HasSubstr("the message is truncated")));
 }
 
 TEST(Cdr, RefusesWhatIsNoString) {
   Buffer bytes = kHeader;
   bytes.back() = 'c';
-  EXPECT_THAT(decode_error<std_msgs::Header>(bytes), HasSubstr("does not end with a zero"));
+  EXPECT_THAT(decode_error<std_msgs::Header>(bytes), HasSubstr("is not zero-terminated"));
   bytes = kHeader;
   bytes[12] = 0;  // without its zero, as some write
   bytes.resize(16);
@@ -169,7 +169,7 @@ TEST(Cdr, RefusesStringsOverTheirBound) {
 TEST(CdrDeathTest, WritesNoStringOverItsBound) {
   rmw_dds_common::NodeEntitiesInfo node;
   node.node_name = std::string(257, 'n');
-  EXPECT_DEATH(encoded(node), "over its bound");
+  EXPECT_DEATH(encoded(node), "exceeds its bound");
 }
 
 TEST(Cdr, BytesLeftOverMeanAnotherType) {
@@ -177,7 +177,8 @@ TEST(Cdr, BytesLeftOverMeanAnotherType) {
   bytes.resize(bytes.size() + 3);  // padding of some writers
   EXPECT_EQ(decode_error<std_msgs::Header>(bytes), "");
   bytes.push_back(0);
-  EXPECT_THAT(decode_error<std_msgs::Header>(bytes), HasSubstr("has ended, but not its bytes"));
+  EXPECT_THAT(decode_error<std_msgs::Header>(bytes),
+              HasSubstr("unread bytes after the end of the message"));
 }
 
 // Counts of what cannot be there are refused before memory is asked for.
@@ -185,7 +186,7 @@ TEST(Cdr, ClaimsAloneTakeNoMemory) {
   const Buffer claim = {0, 1, 0, 0, 0, 0, 0,    0,    0,    0,    0, 0, 1, 0,
                         0, 0, 0, 0, 0, 0, 0xff, 0xff, 0xff, 0xff, 0, 0, 0, 0};
   EXPECT_THAT(decode_error<sensor_msgs::JointState>(claim),
-              AllOf(HasSubstr("4294967295 elements do not fit into the 4 bytes left"),
+              AllOf(HasSubstr("4294967295 elements do not fit into the remaining 4 bytes"),
                     HasSubstr("in name")));
   EXPECT_THAT(decode_error<std_msgs::String>({0, 1, 0, 0, 0xff, 0xff, 0xff, 0x7f, 'a', 0}),
               HasSubstr("do not fit"));

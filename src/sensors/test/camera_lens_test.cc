@@ -216,7 +216,7 @@ TEST_F(CameraLensTest, MistakesAreToldWithTheirLine) {
     return load("<geom size='1'/>", "lens = " + lens);
   };
   EXPECT_THAT(told(R"({ model = "plumb_bob", d = [-0.9, 0, 0, 0], fx = 150 })"),
-              AllOf(HasSubstr("room.toml:12"), HasSubstr("folds within the picture")));
+              AllOf(HasSubstr("room.toml:12"), HasSubstr("folds within the image")));
   EXPECT_THAT(told(R"({ model = "plumbbob" })"), HasSubstr("plumb_bob"));
   EXPECT_THAT(told(R"({ model = "equidistant", d = [0.1, 0, 0, 0, 0] })"),
               AllOf(HasSubstr("room.toml:12"), HasSubstr("takes 4")));

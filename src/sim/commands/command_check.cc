@@ -78,8 +78,8 @@ class Check {
     const RobotInstance& robot = world_.robots[static_cast<size_t>(c.robot.id)];
     const std::vector<int> actuators = robot_actuators(model_, robot);
     if (c.values.size() != actuators.size())
-      return refuse(fmt::format("robot '{}' has {} actuators, got {} values", robot.name,
-                                actuators.size(), c.values.size()),
+      return refuse(fmt::format("robot '{}' has {} actuators, not {}", robot.name, actuators.size(),
+                                c.values.size()),
                     "pass one value per entry of RobotInfo::actuators");
     for (const int actuator : actuators)
       if (model_.actuator_ctrlnum[actuator] != 1)
@@ -149,7 +149,7 @@ class Check {
   Status check_handle(Handle<Kind> handle, const char* kind, int first, mjtSize end) const {
     if (handle.world != 0 && handle.world != serial_) {
       return refuse(
-          fmt::format("the handle of a {} belongs to a World other than the running one", kind),
+          fmt::format("the handle of a {} belongs to another World, not to the running one", kind),
           "look it up again in Simulation::world(): a recompile creates a new World");
     }
     if (handle.id < first || handle.id >= end)

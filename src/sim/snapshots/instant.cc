@@ -50,7 +50,7 @@ struct Instant::Solved {
     if (!good) return Error{ErrorKind::kUsage, "no instant has been computed"};
     if (handle.world != 0 && handle.world != world->serial) {
       return Error{ErrorKind::kUsage,
-                   "the handle belongs to another World than this instant",
+                   "the handle belongs to another World, not to that of this instant",
                    {},
                    "look it up again in Snapshot::world(): a recompile creates a new World"};
     }

@@ -10,7 +10,7 @@ namespace {
 template <class H>
 void check_handle(const SnapshotData& data, H handle, mjtSize count) {
   GLOAM_CHECK(handle.world == 0 || handle.world == data.world->serial,
-              "the handle belongs to another World than the Snapshot; look it up again");
+              "the handle belongs to another World, not to that of the Snapshot; look it up again");
   GLOAM_CHECK(handle.id >= 0 && handle.id < count, "the handle is out of range in this World");
 }
 

@@ -57,7 +57,7 @@ Gone go_towards(Vec3 goal, const std::string& more) {
 TEST(Agents, AGoalInAWallIsSaidAndTheNearestPointTaken) {
   const auto [said, p] = go_towards({2, 0.3, 0}, "<geom type='box' size='1 1 1' pos='2 0 1'/>");
   EXPECT_NE(said.find("'ann' cannot reach (2.00, 0.30, 0.00)"), std::string::npos) << said;
-  EXPECT_NE(said.find("nearest point"), std::string::npos) << said;
+  EXPECT_NE(said.find("nearest reachable point"), std::string::npos) << said;
   EXPECT_EQ(said.find("cannot reach", said.find("cannot reach") + 1), std::string::npos)
       << "once is enough: " << said;
   EXPECT_LT(norm(flat(p - Vec3d{2, 0.3, 0})), 2.2) << "it went near";
@@ -75,7 +75,7 @@ TEST(Agents, ABeginningInARackIsMovedOrRefused) {
   ::testing::internal::CaptureStderr();
   auto stepper = rig.stepper();
   const std::string said = ::testing::internal::GetCapturedStderr();
-  EXPECT_NE(said.find("agent 'ann' begins at (2.2, 0, 0), where there is no room"),
+  EXPECT_NE(said.find("agent 'ann' starts at (2.2, 0, 0), where there is no room"),
             std::string::npos)
       << said;
   EXPECT_GT(std::abs(motion_of(*stepper, 0).p.x - 2), 0.75) << "it stands beside the rack";

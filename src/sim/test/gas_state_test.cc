@@ -92,11 +92,11 @@ TEST(GasState, CreateRefusesWhatItCanNotDo) {
   EXPECT_EQ(message(kGrid, nullptr), "");
   EXPECT_THAT(message({3, 30, 30, 0.1f, {}}, nullptr), HasSubstr("3 x 30 x 30"));
   EXPECT_THAT(message({2000, 30, 30, 0.1f, {}}, nullptr), HasSubstr("2000"));
-  EXPECT_THAT(message({1024, 1024, 1024, 0.1f, {}}, nullptr), HasSubstr("at most"));
+  EXPECT_THAT(message({1024, 1024, 1024, 0.1f, {}}, nullptr), HasSubstr("the limit is 134217728"));
   if (memory_room().bytes < uint64_t(16) << 30) {  // else it would be made
     EXPECT_THAT(message({512, 512, 512, 0.1f, {}}, nullptr), HasSubstr("memory"));
   }
-  EXPECT_THAT(message({30, 30, 30, 0, {}}, nullptr), HasSubstr("voxels of 0 m"));
+  EXPECT_THAT(message({30, 30, 30, 0, {}}, nullptr), HasSubstr("got 0 m"));
   EXPECT_THAT(message({30, 30, 30, 0.1f, {NAN, 0, 0}}, nullptr), HasSubstr("not finite"));
   EXPECT_THAT(message(kGrid, [](auto* p) { p->mixing_time = 0; }), HasSubstr("mixing_time"));
   EXPECT_THAT(message(kGrid, [](auto* p) { p->radiated = 1.5f; }), HasSubstr("radiated"));

@@ -250,7 +250,7 @@ TEST(Vehicle, BeginningsWithoutRoomAreMovedOrRefused) {
   ::testing::internal::CaptureStderr();
   auto stepper = rig.stepper();
   const std::string said = ::testing::internal::GetCapturedStderr();
-  EXPECT_NE(said.find("agent 'v' begins at (2.2, 0, 0), where there is no room"), std::string::npos)
+  EXPECT_NE(said.find("agent 'v' starts at (2.2, 0, 0), where there is no room"), std::string::npos)
       << said;
 
   AgentRig full(agent_place("<geom type='box' size='6 6 1' pos='0 0 1'/>"));

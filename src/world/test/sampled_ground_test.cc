@@ -274,17 +274,17 @@ TEST_F(SampledGrounds, ComplainOfWhatCannotBeSampled) {
   const auto with = [&](const std::string& more) { return complaint(kGround + more); };
   EXPECT_THAT(with(""), HasSubstr("g.obj"));  // is not there
   folder_.write("g.obj", bumps_obj(5, 10));
-  EXPECT_THAT(
-      with("low = [20, 20]\nhigh = [30, 30]\n"),
-      HasSubstr("scene.toml:1:1: hfield 'ground': no sample of the region has a surface under "
-                "it (the mesh extends over x -5 … 5 m, y -5 … 5 m"));
+  EXPECT_THAT(with("low = [20, 20]\nhigh = [30, 30]\n"),
+              HasSubstr("scene.toml:1:1: hfield 'ground': no sample of the region has a surface "
+                        "below it (the mesh extends over x -5 … 5 m, y -5 … 5 m"));
   EXPECT_THAT(with("low = [2, 2]\nhigh = [1, 4]\n"),
               HasSubstr("hfield 'ground': the region is empty: x from 2 to 1 m"));
   EXPECT_THAT(with("high = [-7, -7]\n"), HasSubstr("the region is empty"));
   EXPECT_THAT(with("low = [nan, 0]\n"), HasSubstr("'low[0]' is nan"));
-  EXPECT_THAT(complaint("[[hfield]]\nname = \"g\"\nfile = \"g.obj\"\nresolution = 0.0001\n"),
-              HasSubstr("100001 x 100001 samples in 1 layer are more than 16777216 (give a coarser "
-                        "'resolution' or a smaller region)"));
+  EXPECT_THAT(
+      complaint("[[hfield]]\nname = \"g\"\nfile = \"g.obj\"\nresolution = 0.0001\n"),
+      HasSubstr("100001 x 100001 samples in 1 layer exceed the limit of 16777216 (use a coarser "
+                "'resolution' or a smaller region)"));
   EXPECT_THAT(complaint(std::string(kGround) + kGround), HasSubstr("two hfields named 'ground'"));
   EXPECT_THAT(with("[[visual]]\nname = \"ground\"\nfile = \"scene.toml\"\n"),
               HasSubstr("visual 'ground' have the same name"));

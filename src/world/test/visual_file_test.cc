@@ -452,7 +452,7 @@ TEST_F(VisualFile, BadInputIsNamed) {
   EXPECT_THAT(error(v), testing::AllOf(HasSubstr("scene.toml:3"), HasSubstr("cut.glb"),
                                        HasSubstr("visual 'lamp'")));
   EXPECT_THAT(error(visual(folder.write("a.fbx", "Kaydara FBX Binary"))),
-              testing::AllOf(HasSubstr("none of glTF"), HasSubstr("GLB")));
+              testing::AllOf(HasSubstr("not a glTF"), HasSubstr("GLB")));
   EXPECT_THAT(error(visual(folder.path / "none.glb")), HasSubstr("none.glb"));
   EXPECT_THAT(error(visual(folder.write("nan.obj", "v 0 0 0\nv nan 0 0\nv 0 1 0\nf 1 2 3\n"))),
               HasSubstr("finite"));
@@ -465,7 +465,7 @@ TEST_F(VisualFile, BadInputIsNamed) {
       folder.write("in/a.obj", "mtllib a.mtl\nusemtl m\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"))});
   w.scene.access.strict = true;
   w.scene.file = folder.path / "in/scene.toml";
-  EXPECT_THAT(visual_test::refusal(w), HasSubstr("leads out of the folder"));
+  EXPECT_THAT(visual_test::refusal(w), HasSubstr("leads outside of the folder"));
 }
 
 TEST_F(VisualFile, TrianglesWithoutAreaAreLeftOutAndSaid) {
