@@ -122,11 +122,11 @@ Status apply_packages(FileAccess& access, const std::vector<std::string>& packag
 namespace {
 
 void tell_all(const char* heading, const std::vector<Error>& errors) {
-  constexpr size_t kMost = 20;
-  for (size_t i = 0; i < std::min(errors.size(), kMost); ++i)
+  constexpr size_t kMaxListed = 20;
+  for (size_t i = 0; i < std::min(errors.size(), kMaxListed); ++i)
     tell("gloam: {}: {}\n", heading, errors[i].to_string());
-  if (errors.size() > kMost)
-    tell("gloam: {}: {} more; run gloam info to list them\n", heading, errors.size() - kMost);
+  if (errors.size() > kMaxListed)
+    tell("gloam: {}: {} more; run gloam info to list them\n", heading, errors.size() - kMaxListed);
 }
 
 }  // namespace

@@ -22,7 +22,7 @@ enum class Phase { kNothing, kStopping, kFinishing };
 
 constexpr std::chrono::milliseconds kTimeToStop{1500};
 constexpr std::chrono::seconds kTimeToFinish{20};
-constexpr std::chrono::milliseconds kPoll{20};  // a signal handler cannot wake a thread
+constexpr std::chrono::milliseconds kPollPeriod{20};  // a signal handler cannot wake a thread
 
 std::atomic<bool> stop_requested{false};
 std::atomic<Phase> phase{Phase::kNothing};
@@ -53,9 +53,9 @@ void end_process(const Error& error) {
 }
 
 void watch() {
-  while (!stop_requested) std::this_thread::sleep_for(kPoll);
+  while (!stop_requested) std::this_thread::sleep_for(kPollPeriod);
   const Clock::time_point signalled = Clock::now();
-  for (;; std::this_thread::sleep_for(kPoll)) {
+  for (;; std::this_thread::sleep_for(kPollPeriod)) {
     const auto since = Clock::now() - signalled;
     if (end_scopes > 0 || phase == Phase::kNothing)
       end_process({ErrorKind::kInterrupted, "interrupted"});

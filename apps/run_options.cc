@@ -37,12 +37,13 @@ namespace {
 // A log that is resumed has its own World: options that would change it are rejected by name,
 // except the `kept` ones, which affect only the new run.
 void refuse_beside_log(const CLI::App& command, const std::vector<const CLI::Option*>& options) {
-  constexpr std::string_view kKept[] = {"--camera", "--resolution", "--threads"};
+  constexpr std::string_view kAllowedOptions[] = {"--camera", "--resolution", "--threads"};
   const CLI::Option* at = command.get_option_no_throw("--at");
   if (at == nullptr || at->count() == 0) return;
   for (const CLI::Option* option : options) {
     const std::string name = option->get_name();
-    if (option->count() > 0 && std::ranges::find(kKept, name) == std::end(kKept))
+    if (option->count() > 0 &&
+        std::ranges::find(kAllowedOptions, name) == std::end(kAllowedOptions))
       throw CLI::ParseError(
           fmt::format(
               "{} cannot be combined with --at, which resumes a log unchanged; to run a changed "

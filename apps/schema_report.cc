@@ -58,10 +58,10 @@ void print_json(const SchemaCoverage& coverage, const Count& attributes, const C
 
 // "mujoco/actuator/motor/gear" of thirty elements as "gear of actuator/motor, actuator/position …".
 std::string in_short(const std::vector<std::string>& attributes) {
-  constexpr size_t kMost = 3;
+  constexpr size_t kMaxDocWords = 3;
   std::vector<std::string> first;
   for (const std::string& attribute : attributes) {
-    if (first.size() == kMost) break;
+    if (first.size() == kMaxDocWords) break;
     first.push_back(attribute.substr(attribute.find('/') + 1));
   }
   const size_t more = attributes.size() - first.size();

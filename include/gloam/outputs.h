@@ -141,9 +141,10 @@ inline constexpr auto kCameraOutputs = [] {
 
 /// Outputs of a run that can be recorded: all camera outputs, and the others.
 inline constexpr auto kRecordOutputs = [] {
-  constexpr std::string_view kRest[] = {"lidar", "metrics", "contact_sheet", "sensors", "state"};
-  std::array<std::string_view, kCameraOutputs.size() + std::size(kRest)> all;
-  std::ranges::copy(kRest, std::ranges::copy(kCameraOutputs, all.begin()).out);
+  constexpr std::string_view kOtherOutputs[] = {"lidar", "metrics", "contact_sheet", "sensors",
+                                                "state"};
+  std::array<std::string_view, kCameraOutputs.size() + std::size(kOtherOutputs)> all;
+  std::ranges::copy(kOtherOutputs, std::ranges::copy(kCameraOutputs, all.begin()).out);
   return all;
 }();
 

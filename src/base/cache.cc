@@ -26,7 +26,7 @@ namespace {
 constexpr std::array kFormats = {kModelCache, kVisualCache, kBvhCache, kHullCache, kSceneCache};
 constexpr size_t kHeadSize = 2 * sizeof(uint64_t);  // the format's number, the hash of the rest
 constexpr size_t kHashedPiece = size_t{16} << 20;
-constexpr uint64_t kUsualLimit = uint64_t{10} << 30;
+constexpr uint64_t kDefaultSizeLimit = uint64_t{10} << 30;
 // Older than that, what a writer has left aside is of one that died.
 constexpr std::chrono::hours kLongestWrite{1};
 
@@ -151,7 +151,7 @@ uint64_t hash_large(std::span<const std::byte> bytes) {
 
 Result<uint64_t> cache_limit() {
   const char* text = std::getenv("GLOAM_CACHE_SIZE");
-  if (text == nullptr || *text == 0) return kUsualLimit;
+  if (text == nullptr || *text == 0) return kDefaultSizeLimit;
   const char* const end = text + std::strlen(text);
   uint64_t value = 0;
   const auto [after, error] = std::from_chars(text, end, value);
@@ -170,7 +170,7 @@ Result<uint64_t> cache_limit() {
 void keep_in_cache(const fs::path& entry, std::span<const uint8_t> bytes) {
   const Result<uint64_t> set = cache_limit();
   if (!set.ok()) log_warning("{}; using the default of 10G", set.error().to_string());
-  const uint64_t limit = set.ok() ? *set : kUsualLimit;
+  const uint64_t limit = set.ok() ? *set : kDefaultSizeLimit;
   if (bytes.size() > limit) return;
   Status status = make_folder(entry.parent_path());
   if (status.ok()) status = write_file_atomic(entry, bytes);

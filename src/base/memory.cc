@@ -114,8 +114,8 @@ bool is_want_of_memory(const std::system_error& error) {
 }
 
 Status check_memory(uint64_t bytes, const std::string& what, const std::string& hint) {
-  constexpr uint64_t kAlwaysThere = 16 << 20;  // not worth the look
-  if (bytes <= kAlwaysThere) return {};
+  constexpr uint64_t kUncheckedBytes = 16 << 20;  // not worth the look
+  if (bytes <= kUncheckedBytes) return {};
   const MemoryRoom room = memory_room();
   if (bytes <= room.bytes) return {};
   const auto gib = [](uint64_t n) { return static_cast<double>(n) / (1 << 30); };

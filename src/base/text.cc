@@ -51,8 +51,8 @@ std::string nearest_name(std::string_view word, std::span<const std::string> can
 std::string suggest_name(std::string_view word, std::span<const std::string> candidates) {
   const std::string near = nearest_name(word, candidates);
   if (!near.empty()) return fmt::format("did you mean '{}'?", near);
-  constexpr size_t kShortList = 24;
-  if (candidates.empty() || candidates.size() > kShortList) return {};
+  constexpr size_t kMaxListedCandidates = 24;
+  if (candidates.empty() || candidates.size() > kMaxListedCandidates) return {};
   return fmt::format("one of: {}", fmt::join(candidates, ", "));
 }
 

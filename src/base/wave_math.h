@@ -13,8 +13,8 @@ struct SinCos {
 
 namespace wave_math {
 // Added and taken off again it rounds to a whole number, ties to even.
-inline constexpr double kRound = 0x1.8p52;
-inline double whole(double x) { return (x + kRound) - kRound; }
+inline constexpr double kRoundingMagic = 0x1.8p52;
+inline double whole(double x) { return (x + kRoundingMagic) - kRoundingMagic; }
 }  // namespace wave_math
 
 /// Sine and cosine for |x| < 1e6, within 1e-9 of the exact ones; near 0 within 1e-13.
@@ -52,8 +52,8 @@ inline double exponential(double x) {
   constexpr double kLn2 = 0x1.62e42feep-1, kLn2Rest = 0x1.a39ef35793c76p-33;
   x = x < -700 ? -700 : x;
   x = x > 700 ? 700 : x;
-  const double shifted = x * 1.4426950408889634 + wave_math::kRound;
-  const double n = shifted - wave_math::kRound;
+  const double shifted = x * 1.4426950408889634 + wave_math::kRoundingMagic;
+  const double n = shifted - wave_math::kRoundingMagic;
   const double r = (x - n * kLn2) - n * kLn2Rest;
   double p = 1.0 / 479001600;
   p = p * r + 1.0 / 39916800;

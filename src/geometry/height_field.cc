@@ -17,9 +17,10 @@ using Vec3d = Vec3Of<double>;
 constexpr float kNoHeight = std::numeric_limits<float>::quiet_NaN();
 constexpr double kSameSurface = 1e-3;  // [m] two triangles that meet in an edge under a sample
 constexpr size_t kMostSurfaces = 64;   // over one another, on average over a band of rows
-constexpr double kMostDrawn = 1024;    // the same over the grid, where the highest alone is kept
-constexpr int kBands = 64;             // bands of rows, one task each
-constexpr int kShares = 16;            // groups of triangles, one task each
+constexpr double kMaxMeanOverdraw =
+    1024;                            // the same over the grid, where the highest alone is kept
+constexpr int kBands = 64;           // bands of rows, one task each
+constexpr int kTriangleGroups = 16;  // groups of triangles, one task each
 
 Vec3d to_double(Vec3f v) { return {v.x, v.y, v.z}; }
 
@@ -171,18 +172,18 @@ void choose_floors(std::span<const Hit> hits, int layers, Out&& out) {
 /// Triangles that reach into each band, by share and band; nothing when they would take too long.
 std::vector<std::vector<uint32_t>> sort_into_bands(const GridTriangles& triangles,
                                                    const HeightGrid& grid) {
-  std::vector<std::vector<uint32_t>> lists(static_cast<size_t>(kShares) * kBands);
+  std::vector<std::vector<uint32_t>> lists(static_cast<size_t>(kTriangleGroups) * kBands);
   std::vector<int> band_of(static_cast<size_t>(grid.rows));
   for (int band = 0; band < kBands; ++band)
     for (int row = Band::row_of(grid, band); row < Band::row_of(grid, band + 1); ++row)
       band_of[static_cast<size_t>(row)] = band;
   const size_t count = triangles.count();
   const auto samples = static_cast<double>(grid.size());
-  const double most = kMostDrawn * samples + kMostDrawn * static_cast<double>(count);
-  std::vector<double> drawn(kShares);  // samples, about
-  parallel_for("triangles into bands", kShares, [&](int64_t share) {
+  const double most = kMaxMeanOverdraw * samples + kMaxMeanOverdraw * static_cast<double>(count);
+  std::vector<double> drawn(kTriangleGroups);  // samples, about
+  parallel_for("triangles into bands", kTriangleGroups, [&](int64_t share) {
     const auto k = static_cast<size_t>(share);
-    for (size_t i = count * k / kShares; i < count * (k + 1) / kShares; ++i) {
+    for (size_t i = count * k / kTriangleGroups; i < count * (k + 1) / kTriangleGroups; ++i) {
       const GridTriangle t = triangles[i];
       // One row more, for samples that lie after their corner.
       const double low = std::max(std::ceil(t.low_y()) - 1, 0.0);
@@ -263,7 +264,7 @@ Result<Floors> sample_floors(std::span<const PlacedMesh> meshes, const HeightGri
   const std::vector<std::vector<uint32_t>> lists = sort_into_bands(triangles, grid);
   if (lists.empty()) {
     return Error{ErrorKind::kInput,
-                 fmt::format("more than {:.0f} surfaces lie above one another", kMostDrawn)};
+                 fmt::format("more than {:.0f} surfaces lie above one another", kMaxMeanOverdraw)};
   }
   Floors floors{grid, layers, {}};
   floors.z.assign(grid.size() * static_cast<size_t>(layers), kNoHeight);
@@ -271,7 +272,7 @@ Result<Floors> sample_floors(std::span<const PlacedMesh> meshes, const HeightGri
   parallel_for("sample height field", kBands, [&](int64_t index) {
     const Band band(grid, static_cast<int>(index), seed);
     const auto each_triangle = [&](auto&& emit) {
-      for (int share = 0; share < kShares; ++share)
+      for (int share = 0; share < kTriangleGroups; ++share)
         for (const uint32_t i : lists[static_cast<size_t>(share * kBands + index)])
           band.draw(triangles[i], emit);
     };

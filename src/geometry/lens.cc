@@ -9,8 +9,9 @@
 namespace gloam {
 namespace {
 
-constexpr double kWidest = 89.4 * kDegree;  // limit of models that have no angle beyond a right one
-constexpr double kNarrowFisheye = 80;       // [deg] that a fisheye sees at least on each side
+constexpr double kMaxPinholeAngle =
+    89.4 * kDegree;                    // limit of models that have no angle beyond a right one
+constexpr double kNarrowFisheye = 80;  // [deg] that a fisheye sees at least on each side
 
 /// True if the picture still grows with the angle from the axis at `angle` [rad].
 bool grows(const LensOf<double>& lens, double angle) {
@@ -25,7 +26,8 @@ bool grows(const LensOf<double>& lens, double angle) {
 
 /// The angle up to which the picture grows [rad].
 double widest_angle(const LensOf<double>& lens) {
-  const double end = lens.model == LensModel::kEquidistant ? lenses::kHalfTurn<double> : kWidest;
+  const double end =
+      lens.model == LensModel::kEquidistant ? lenses::kHalfTurn<double> : kMaxPinholeAngle;
   constexpr int kSteps = 1000;
   double low = 0, high = end;
   for (int i = 1; i <= kSteps; ++i) {

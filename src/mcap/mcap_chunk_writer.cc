@@ -7,7 +7,7 @@
 namespace gloam {
 namespace {
 
-constexpr size_t kLeastGain = 64;  // a chunk is compressed if that saves 1/64 of it
+constexpr size_t kMinCompressionGain = 64;  // a chunk is compressed if that saves 1/64 of it
 
 /// Appends compression, length and records; false, and nothing is appended, where that is not
 /// worth it.
@@ -18,7 +18,7 @@ bool append_compressed(std::span<const uint8_t> records, ZstdCompressor* compres
   const size_t length_at = out->size();
   record->put_u64(0);
   const bool smaller =
-      compressor->append(records, records.size() - records.size() / kLeastGain, out);
+      compressor->append(records, records.size() - records.size() / kMinCompressionGain, out);
   *size = out->size() - length_at - 8;
   // A chunk is stored, too, where it shrinks by more than the reader takes from strangers.
   if (smaller && ratio_is_credible(*size, records.size(), McapLimits())) {

@@ -11,12 +11,12 @@ namespace {
 /// Reads the footer and the bytes of the summary; what is wrong, or "".
 Result<std::string> load_summary(const LogSource& source, const McapLimits& limits,
                                  uint64_t data_begin, std::vector<uint8_t>* summary) {
-  constexpr uint64_t kTail = kMcapRecordHead + kMcapFooterContent + kMcapMagic.size();
-  if (source.size() < data_begin + kTail) return std::string("the log has no footer");
-  const uint64_t footer_at = source.size() - kTail;
-  std::vector<uint8_t> tail(kTail);
+  constexpr uint64_t kTrailerSize = kMcapRecordHead + kMcapFooterContent + kMcapMagic.size();
+  if (source.size() < data_begin + kTrailerSize) return std::string("the log has no footer");
+  const uint64_t footer_at = source.size() - kTrailerSize;
+  std::vector<uint8_t> tail(kTrailerSize);
   GLOAM_TRY_STATUS(source.read(footer_at, tail));
-  McapRecordCursor cursor(std::span<const uint8_t>(tail).first(kTail - kMcapMagic.size()));
+  McapRecordCursor cursor(std::span<const uint8_t>(tail).first(kTrailerSize - kMcapMagic.size()));
   McapFooter footer;
   if (!std::equal(kMcapMagic.begin(), kMcapMagic.end(), tail.end() - kMcapMagic.size()) ||
       !cursor.next() || cursor.op() != McapOp::kFooter || !decode(cursor.content(), &footer))

@@ -65,7 +65,7 @@ struct Instruction {
 class Expression {
  public:
   static constexpr size_t kLongest = 4096;  ///< characters
-  static constexpr int kDeepest = 64;       ///< parentheses and operators within each other
+  static constexpr int kMaxDepth = 64;      ///< parentheses and operators within each other
 
   /// Compiles a text whose value is one number. Error: its place in the text (line and column),
   /// and what may have been meant.

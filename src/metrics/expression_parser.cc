@@ -65,9 +65,9 @@ Status ExpressionParser::want_number(int width, const SourceLoc& loc, std::strin
 }
 
 Status ExpressionParser::deeper() {
-  if (++depth_ <= Expression::kDeepest) return {};
+  if (++depth_ <= Expression::kMaxDepth) return {};
   return refuse(token_.loc,
-                fmt::format("the expression is nested more than {} deep", Expression::kDeepest));
+                fmt::format("the expression is nested more than {} deep", Expression::kMaxDepth));
 }
 
 void ExpressionParser::emit(const Instruction& instruction, int change) {

@@ -12,7 +12,7 @@ namespace gloam {
 namespace {
 
 constexpr double kDoorPitch = 4.6, kDoorWidth = 0.95;  // [m]
-constexpr double kBehind = 1.2;                        // from the western end to the origin
+constexpr double kOriginOffset = 1.2;                  // from the western end to the origin
 
 class HallwayPlanner {
  public:
@@ -23,7 +23,7 @@ class HallwayPlanner {
     plan_.ceiling = o_.ceiling;
     const std::vector<double> lengths = share_out();
     const int legs = static_cast<int>(lengths.size());
-    double x = -kBehind, y = 0;  // middle of the next leg's beginning
+    double x = -kOriginOffset, y = 0;  // middle of the next leg's beginning
     for (int i = 0; i < legs; ++i) {
       const bool east = i % 2 == 0;
       const double length = lengths[static_cast<size_t>(i)], w = o_.width / 2;

@@ -21,10 +21,10 @@ constexpr double kRackToWall = 0.32;            // behind racks at a wall: colum
 constexpr double kEnd = 1.6;                    // way around the far end of the racks
 constexpr double kPalletPitch = 0.9;
 constexpr double kDockWidth = 3.0, kDockHeight = 3.2;
-constexpr double kWay = 1.1;      // stays free in the staging zone
-constexpr double kLevel = 1.6;    // between shelves [m]
-constexpr double kGirders = 0.6;  // height of the girders below the ceiling [m]
-constexpr double kGirder = 6;     // between girders
+constexpr double kAisleWidth = 1.1;  // stays free in the staging zone
+constexpr double kLevel = 1.6;       // between shelves [m]
+constexpr double kGirders = 0.6;     // height of the girders below the ceiling [m]
+constexpr double kGirder = 6;        // between girders
 
 class WarehouseBuilder {
  public:
@@ -295,7 +295,7 @@ class WarehouseBuilder {
       plan_.openings.push_back({OpeningKind::kBare, 0, -1, Side::kWest, y, kDockWidth, 0, 3});
     plan_.openings.push_back(
         {OpeningKind::kEntrance, 0, -1, Side::kWest, north_ - 1.2, 0.96, 0, 2.1});
-    RoomLayout layout(plan_, 0, kWay, o_.seed, &place_);
+    RoomLayout layout(plan_, 0, kAisleWidth, o_.seed, &place_);
     const auto anywhere = [&](const Spot& s) {
       return dice_.uniform() + 0.1 * std::min(layout.to_opening(s), 3.0);
     };

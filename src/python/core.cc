@@ -9,7 +9,7 @@
 namespace gloam::python {
 namespace {
 
-constexpr std::chrono::milliseconds kLook{50};  // after which a signal is seen
+constexpr std::chrono::milliseconds kSignalPollPeriod{50};  // after which a signal is seen
 
 const char* class_of(ErrorKind kind) {
   switch (kind) {
@@ -102,7 +102,7 @@ void wait_for(const std::function<void()>& job, const std::function<void()>& sto
   const auto wait = [&](bool once) {
     const nb::gil_scoped_release released;
     std::unique_lock lock(mutex);
-    if (once) return changed.wait_for(lock, kLook, [&] { return done; });
+    if (once) return changed.wait_for(lock, kSignalPollPeriod, [&] { return done; });
     changed.wait(lock, [&] { return done; });
     return true;
   };
@@ -120,12 +120,12 @@ void wait_for(const std::function<void()>& job, const std::function<void()>& sto
 
 bool wait_patiently(const std::function<bool()>& is_done, std::chrono::seconds patience) {
   using Clock = std::chrono::steady_clock;
-  constexpr std::chrono::milliseconds kNap{1};
+  constexpr std::chrono::milliseconds kSleepPeriod{1};
   for (const auto end = Clock::now() + patience; !is_done();) {
     if (Clock::now() > end) return false;
     {
       const nb::gil_scoped_release released;
-      std::this_thread::sleep_for(kNap);
+      std::this_thread::sleep_for(kSleepPeriod);
     }
     if (PyErr_CheckSignals() != 0) throw nb::python_error();
   }

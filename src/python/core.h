@@ -47,10 +47,10 @@ T take(Result<T> result) {
 }
 
 /// Time in which callbacks and hooks have to return when their stream or simulation is closed.
-constexpr std::chrono::seconds kPatience{5};
+constexpr std::chrono::seconds kCallbackTimeout{5};
 /// Waits until `is_done` with the interpreter free meanwhile. Whether it was. Ctrl-C is raised.
 bool wait_patiently(const std::function<bool()>& is_done,
-                    std::chrono::seconds patience = kPatience);
+                    std::chrono::seconds patience = kCallbackTimeout);
 
 /// Runs `job` on another thread while this one looks after signals: a Ctrl-C calls `stop` and is
 /// raised once the job has ended. For what may take longer than a tenth of a second.

@@ -8,12 +8,12 @@ void Inbox::close() {
   if (!try_close())
     raise("StuckError",
           "the callback of " + name_ + " has not returned within " +
-              std::to_string(kPatience.count()) + " s: its stream is abandoned",
+              std::to_string(kCallbackTimeout.count()) + " s: its stream is abandoned",
           "callbacks must return; do long work in a thread of your own");
 }
 
 bool Inbox::is_stuck() const {
-  return is_in_callback_ && std::chrono::steady_clock::now() - began_.load() > kPatience;
+  return is_in_callback_ && std::chrono::steady_clock::now() - began_.load() > kCallbackTimeout;
 }
 
 // The stream ends on a thread of its own: it waits for the callbacks of what has come, of which one

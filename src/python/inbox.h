@@ -33,14 +33,14 @@ class Inbox {
     stream_ = std::move(stream);
     next_from_ = from;
   }
-  /// Raises a StuckError where the callback does not return within kPatience: the stream is then
-  /// left behind.
+  /// Raises a StuckError where the callback does not return within kCallbackTimeout: the stream is
+  /// then left behind.
   void close();
   /// The same without raising. False: this must not be deleted.
   bool try_close();
   const std::string& name() const { return name_; }
   bool is_in_callback() const { return is_in_callback_; }
-  /// Whether a callback has lasted longer than kPatience.
+  /// Whether a callback has lasted longer than kCallbackTimeout.
   bool is_stuck() const;
   Stream& stream();
   bool is_open() const { return stream_ != nullptr; }

@@ -58,7 +58,7 @@ std::unique_lock<std::timed_mutex> Run::turn() {
 void Run::leave_behind(const std::string& what) {
   is_closed_ = true;
   raise("StuckError",
-        what + " has not returned within " + std::to_string(kPatience.count()) +
+        what + " has not returned within " + std::to_string(kCallbackTimeout.count()) +
             " s: its thread and the simulation's memory are abandoned",
         "callbacks and hooks must return; do long work in a thread of your own");
 }

@@ -42,7 +42,7 @@ class Run {
   /// be in a hook of Python's.
   Snapshot latest();
   /// Ends the simulation and its streams. Raises an Error where a callback or hook does not return
-  /// within kPatience: its thread and the simulation's memory are then left behind.
+  /// within kCallbackTimeout: its thread and the simulation's memory are then left behind.
   void close();
   bool is_closed() const { return is_closed_; }
 

@@ -12,7 +12,7 @@ namespace {
 
 // Where several threads may add messages and one Python object looks: see Inbox.
 std::shared_ptr<Inbox> make_inbox(Run& run, std::string name, nb::object callback) {
-  constexpr int kWaiting = 64;  // messages
+  constexpr int kQueueCapacity = 64;  // messages
   run.simulation();
   const auto destroy = [](Inbox* inbox) {
     destroy_when_safe(Kept::kStream, [inbox] {
@@ -23,7 +23,7 @@ std::shared_ptr<Inbox> make_inbox(Run& run, std::string name, nb::object callbac
       }
     });
   };
-  return {new Inbox(std::move(name), kWaiting, std::move(callback)), destroy};
+  return {new Inbox(std::move(name), kQueueCapacity, std::move(callback)), destroy};
 }
 
 template <class S>

@@ -10,7 +10,8 @@
 namespace gloam {
 namespace {
 
-constexpr float kPen = 0.125f, kBoldPen = 0.185f;  // width of a stroke, in heights of a capital
+constexpr float kStrokeWidth = 0.125f,
+                kBoldStrokeWidth = 0.185f;  // width of a stroke, in heights of a capital
 
 float distance_to_segment(Vec2f p, Vec2f a, Vec2f b) {
   const Vec2f ab = b - a, ap = p - a;
@@ -123,7 +124,7 @@ float Canvas::text(float x, float y, std::string_view text, float size, Rgb8 col
     }
     at += (glyph.width + kFontSpacing) * scale;
   }
-  stroke(lines, max(1.1f, size * (bold ? kBoldPen : kPen)), color);
+  stroke(lines, max(1.1f, size * (bold ? kBoldStrokeWidth : kStrokeWidth)), color);
   return width;
 }
 

@@ -39,12 +39,12 @@ Result<Bytes> exr(const CameraFrame& frame, const std::vector<float>& values,
 /// 16 bits where they can number all parts of the world, which the frame need not show. Else three
 /// bytes as in COCO's panoptic pictures: id = R + 256 G + 65536 B (Kirillov et al. 2019).
 Result<Bytes> ids(const CameraFrame& frame, const std::vector<uint32_t>& values) {
-  constexpr uint32_t kMost16 = 0xFFFF, kMost24 = 0xFFFFFF;
-  if (frame.part_count <= kMost16) return png16(frame, {values.begin(), values.end()});
-  if (frame.part_count > kMost24)
+  constexpr uint32_t kMax16Bit = 0xFFFF, kMax24Bit = 0xFFFFFF;
+  if (frame.part_count <= kMax16Bit) return png16(frame, {values.begin(), values.end()});
+  if (frame.part_count > kMax24Bit)
     return Error{ErrorKind::kUsage,
                  fmt::format("the scene of camera '{}' has {} parts; images can number at most {}",
-                             frame.camera, frame.part_count, kMost24),
+                             frame.camera, frame.part_count, kMax24Bit),
                  {},
                  "read CameraFrame::part instead"};
   std::vector<uint8_t> rgb;

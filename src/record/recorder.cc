@@ -25,7 +25,7 @@ namespace gloam {
 namespace {
 
 // Room that the first summary takes, so that the last one has it on a disk that is full by then.
-constexpr size_t kSummaryRoom = 16 << 10;  // [bytes]
+constexpr size_t kReservedSummaryBytes = 16 << 10;  // [bytes]
 
 // Puts a text into the room of the one before, where it fits.
 void overwrite(const std::filesystem::path& path, std::string text) {
@@ -69,7 +69,7 @@ class FolderRecorder : public Recorder {
     entries_.insert(entries_.end(), info_.beside.begin(), info_.beside.end());
     entries_.push_back(kSummaryName);
     std::string summary = summary_text(nullptr);
-    summary.resize(std::max(summary.size(), kSummaryRoom), ' ');
+    summary.resize(std::max(summary.size(), kReservedSummaryBytes), ' ');
     GLOAM_TRY_STATUS(write_text(kSummaryName, summary));
     GLOAM_TRY_STATUS(write_text("cameras.json", cameras_json(info_.cameras, file_names_)));
     GLOAM_TRY_STATUS(write_text("labels.json", labels_json(info_.labels, info_.label_ids)));

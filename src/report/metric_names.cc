@@ -18,9 +18,10 @@ constexpr std::array<std::pair<const char*, const char*>, 27> kUnits = {{
 }};
 
 // Parts of names, by the built-in metrics of Gloam.
-constexpr std::array kLess = {"error",  "falls",        "fallen", "collision",     "slip",
-                              "energy", "time_to_goal", "cost",   "goal_distance", "drift"};
-constexpr std::array kMore = {"success", "goals_reached", "spl", "sct"};
+constexpr std::array kLowerIsBetter = {"error",         "falls",  "fallen",       "collision",
+                                       "slip",          "energy", "time_to_goal", "cost",
+                                       "goal_distance", "drift"};
+constexpr std::array kHigherIsBetter = {"success", "goals_reached", "spl", "sct"};
 
 bool has_word(const std::string& text, const char* word) {
   for (size_t at = text.find(word); at != std::string::npos; at = text.find(word, at + 1)) {
@@ -56,10 +57,10 @@ MetricName split_metric_name(const std::string& name) {
 Better better_of(const std::string& name) {
   const size_t point = name.rfind('.');
   const std::string own = point == std::string::npos ? name : name.substr(point + 1);
-  for (const char* word : kMore)
-    if (has_word(own, word)) return Better::kMore;
-  for (const char* word : kLess)
-    if (has_word(own, word)) return Better::kLess;
+  for (const char* word : kHigherIsBetter)
+    if (has_word(own, word)) return Better::kHigherIsBetter;
+  for (const char* word : kLowerIsBetter)
+    if (has_word(own, word)) return Better::kLowerIsBetter;
   return Better::kUnknown;
 }
 

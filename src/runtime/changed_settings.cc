@@ -8,12 +8,12 @@
 namespace gloam {
 namespace {
 
-constexpr const char* kToldElsewhere[] = {"sim.seed",         "render.tier",    "render.spp",
-                                          "render.max_depth", "render.denoise", "render.error"};
+constexpr const char* kReportedElsewhere[] = {"sim.seed",         "render.tier",    "render.spp",
+                                              "render.max_depth", "render.denoise", "render.error"};
 
 bool is_told_elsewhere(const std::string& path) {
   return path.starts_with("record.") || path.ends_with(".outputs") ||
-         std::ranges::find(kToldElsewhere, path) != std::end(kToldElsewhere);
+         std::ranges::find(kReportedElsewhere, path) != std::end(kReportedElsewhere);
 }
 
 }  // namespace

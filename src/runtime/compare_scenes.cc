@@ -114,7 +114,7 @@ Result<Seen> see(const ComparisonRequest& request, size_t row, const ProgressCal
   GLOAM_TRY(ComparedScene scene, ComparedScene::create(request, of.scene, progress));
   Seen seen;
   seen.result.name = of.name;
-  seen.result.visibility = VisibilityProbe::kClear;
+  seen.result.visibility = VisibilityProbe::kMaxVisibility;
   seen.width = scene.width(), seen.height = scene.height();
   const double duration = of.scene.sim.duration;
   const auto count = std::max<int64_t>(std::llround(duration * request.rate.value()), 1);

@@ -19,8 +19,8 @@
 namespace gloam {
 namespace {
 
-constexpr std::chrono::milliseconds kLook{5};  // after which a wish to stop is seen
-constexpr int kLooks = 10;                     // after which keep_waiting is called
+constexpr std::chrono::milliseconds kStopPollPeriod{5};  // after which a wish to stop is seen
+constexpr int kPollsPerKeepWaiting = 10;                 // after which keep_waiting is called
 
 // Worlds are compiled on the threads of many callers, each of which has a heap of its own: glibc
 // keeps their free pages, some MB a recompile, unless it is asked to return them.
@@ -158,7 +158,7 @@ void LiveSimulation::restart_speed_clock() {
 }
 
 bool LiveSimulation::has_to_stop(int look) {
-  if (look % kLooks == 0 && keep_waiting_ && !keep_waiting_()) stop_requested_ = true;
+  if (look % kPollsPerKeepWaiting == 0 && keep_waiting_ && !keep_waiting_()) stop_requested_ = true;
   return stop_requested_;
 }
 
@@ -175,10 +175,10 @@ Status LiveSimulation::run_until(int64_t step) {
   step = std::min(step, simulator_->end());
   simulator_->run_until(step);
   for (int look = 1; !has_to_stop(look); ++look) {
-    if (!simulator_->wait_for(kLook)) continue;
+    if (!simulator_->wait_for(kStopPollPeriod)) continue;
     // Somebody may have paused it on the way.
     if (simulator_->step_count() >= step || !simulator_->status().ok()) break;
-    std::this_thread::sleep_for(kLook);
+    std::this_thread::sleep_for(kStopPollPeriod);
   }
   if (stop_requested_.exchange(false)) return stopped_by_the_user();
   const Status status = simulator_->wait();
@@ -200,7 +200,7 @@ void LiveSimulation::pause() {
 Status LiveSimulation::step(int64_t n) {
   paused_ = true;
   const std::optional<Status> taken = simulator_->begin_steps(n);
-  for (int look = 1; !taken && !simulator_->wait_for(kLook); ++look)
+  for (int look = 1; !taken && !simulator_->wait_for(kStopPollPeriod); ++look)
     if (has_to_stop(look)) break;
   if (stop_requested_.exchange(false)) return stopped_by_the_user();
   return taken ? *taken : simulator_->wait();

@@ -98,7 +98,7 @@ Result<std::vector<CameraRequest>> camera_requests(const World& world, const Run
   for (const std::string& name : names) {
     CameraRequest camera;
     camera.camera = name;
-    camera.rate = kUsualCameraRate;
+    camera.rate = kDefaultCameraRate;
     camera.width = request.width;
     camera.height = request.height;
     std::vector<std::string> outputs = scene.record.outputs;
@@ -205,9 +205,9 @@ bool is_interrupt(const Status& status) {
 // Waits until the cameras have made their last pictures. `goes_on` is asked meanwhile; its Error
 // ends the pictures, too.
 Status drain_cameras(const RunProgress::Cameras& cameras, const std::function<Status()>& goes_on) {
-  constexpr std::chrono::milliseconds kLook{20};
+  constexpr std::chrono::milliseconds kDrainPollPeriod{20};
   for (LiveCamera* const camera : cameras) {
-    while (!camera->drain_for(kLook)) {
+    while (!camera->drain_for(kDrainPollPeriod)) {
       const Status status = goes_on();
       if (status.ok()) continue;
       for (LiveCamera* const one : cameras) one->abandon();
@@ -309,9 +309,11 @@ Result<RunReport> record_motion(const World& world, const RunRequest& request,
       // Before an older recording is replaced: the simulation would refuse it later.
       GLOAM_TRY_STATUS(StepSchedule::make(camera.rate, {0, 1}, simulator.timestep()));
       const PictureMemory pictures = sensor->memory();
-      constexpr uint64_t kBeside = 2;  // frames that are made and written beside those that wait
-      memory += pictures.working +
-                (kBeside + static_cast<uint64_t>(RecorderOptions().queue_frames)) * pictures.frame;
+      constexpr uint64_t kFramesInWork =
+          2;  // frames that are made and written beside those that wait
+      memory +=
+          pictures.working +
+          (kFramesInWork + static_cast<uint64_t>(RecorderOptions().queue_frames)) * pictures.frame;
       const CameraOptions* own = find_options(scene, camera.camera);
       info.cameras.push_back({camera.camera, sensor->intrinsics(), camera.rate,
                               own != nullptr ? own->outputs : std::nullopt});

@@ -22,8 +22,8 @@ Progress RunProgress::of(Progress now) {
   const double seconds = std::chrono::duration<double>(Clock::now() - begin_).count();
   most_ = std::max(most_, share());
   now.done = most_;
-  constexpr double kTooLittle = 0.005;  // does not predict the rest
-  now.left = most_ < kTooLittle ? -1 : seconds * (1 - most_) / most_;
+  constexpr double kMinFractionForEstimate = 0.005;  // does not predict the rest
+  now.left = most_ < kMinFractionForEstimate ? -1 : seconds * (1 - most_) / most_;
   return now;
 }
 

@@ -21,10 +21,10 @@ Status run_to_step(Simulator& simulator, int64_t step, const char* what, double 
                    const ProgressCallback& progress, const std::function<Status()>& stop_early) {
   using Clock = std::chrono::steady_clock;
   const auto begin = Clock::now();
-  constexpr std::chrono::milliseconds kLook{10};
+  constexpr std::chrono::milliseconds kStepPollPeriod{10};
   simulator.run_until(step);
   // At `step` it still waits for readers that have no room for its last Snapshots.
-  while (!simulator.wait_for(kLook)) {
+  while (!simulator.wait_for(kStepPollPeriod)) {
     const double done = static_cast<double>(simulator.step_count()) / static_cast<double>(step);
     const double seconds = start + std::chrono::duration<double>(Clock::now() - begin).count();
     Status stopped;

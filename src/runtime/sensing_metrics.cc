@@ -9,8 +9,8 @@
 namespace gloam {
 namespace {
 
-constexpr size_t kApart = 4;     // [px]
-constexpr int kLeastWidth = 16;  // [px], below which four apart tell nothing
+constexpr size_t kPixelSpacing = 4;  // [px]
+constexpr int kLeastWidth = 16;      // [px], below which four apart tell nothing
 
 /// Linear light of 8-bit sRGB.
 const std::array<float, 256>& linear_table() {
@@ -63,9 +63,9 @@ void CameraQuality::add_depth(const CameraFrame& frame) {
 
 void CameraQuality::add_thermal(const CameraFrame& frame) {
   const auto across = static_cast<size_t>(frame.intrinsics.width);
-  for (size_t i = 0; i + kApart < frame.thermal.size(); ++i) {
-    if (i % across + kApart >= across) continue;
-    const auto step = static_cast<double>(frame.thermal[i + kApart] - frame.thermal[i]);
+  for (size_t i = 0; i + kPixelSpacing < frame.thermal.size(); ++i) {
+    if (i % across + kPixelSpacing >= across) continue;
+    const auto step = static_cast<double>(frame.thermal[i + kPixelSpacing] - frame.thermal[i]);
     thermal_squared_ += step * step;
     ++thermal_;
   }

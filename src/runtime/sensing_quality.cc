@@ -16,13 +16,13 @@ double contrast_of(const std::vector<float>& radiance, int width) {
     mean += y[i] / static_cast<double>(n);
   }
   for (double& value : y) value = std::log(value + 0.01 * mean);
-  constexpr size_t kApart = 4;
+  constexpr size_t kPixelSpacing = 4;
   double square = 0;
   size_t count = 0;
-  for (size_t i = 0; i + kApart * across < n; ++i) {
-    if (i % across + kApart >= across) continue;
-    square += (y[i + kApart] - y[i]) * (y[i + kApart] - y[i]);
-    square += (y[i + kApart * across] - y[i]) * (y[i + kApart * across] - y[i]);
+  for (size_t i = 0; i + kPixelSpacing * across < n; ++i) {
+    if (i % across + kPixelSpacing >= across) continue;
+    square += (y[i + kPixelSpacing] - y[i]) * (y[i + kPixelSpacing] - y[i]);
+    square += (y[i + kPixelSpacing * across] - y[i]) * (y[i + kPixelSpacing * across] - y[i]);
     count += 2;
   }
   return std::sqrt(square / static_cast<double>(count));

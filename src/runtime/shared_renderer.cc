@@ -9,11 +9,11 @@ namespace gloam {
 namespace {
 
 void report_left_out(const std::vector<Error>& left_out) {
-  constexpr size_t kMost = 20;
-  for (size_t i = 0; i < std::min(left_out.size(), kMost); ++i)
+  constexpr size_t kMaxListed = 20;
+  for (size_t i = 0; i < std::min(left_out.size(), kMaxListed); ++i)
     log_warning("{}", left_out[i].to_string());
-  if (left_out.size() > kMost)
-    log_warning("{} more elements are not rendered as specified", left_out.size() - kMost);
+  if (left_out.size() > kMaxListed)
+    log_warning("{} more elements are not rendered as specified", left_out.size() - kMaxListed);
 }
 
 }  // namespace

@@ -15,7 +15,8 @@
 namespace gloam {
 namespace {
 
-constexpr std::string_view kOnce[] = {"compiler", "option", "size", "statistic", "visual"};
+constexpr std::string_view kSingletonSections[] = {"compiler", "option", "size", "statistic",
+                                                   "visual"};
 constexpr std::string_view kSections[] = {"actuator", "sensor", "tendon", "equality"};
 
 // "visual/map" of "mujoco/visual/map".
@@ -140,7 +141,8 @@ class NamedOverride {
 
 bool is_once(const MjcfElement& element) {
   const std::string_view path = below_root(element);
-  return std::ranges::find(kOnce, path.substr(0, path.find('/'))) != std::end(kOnce);
+  return std::ranges::find(kSingletonSections, path.substr(0, path.find('/'))) !=
+         std::end(kSingletonSections);
 }
 
 std::vector<const MjcfElement*> overridden_elements(std::string_view tag) {

@@ -54,9 +54,9 @@ namespace {
 // The first step at or after `step` at which a sensor has a sample that is used.
 int64_t next_sample(const SensorTiming& timing, const std::function<int64_t(int64_t)>& used,
                     int64_t step) {
-  constexpr int kTries = 32;
+  constexpr int kMaxTries = 32;
   int64_t next = timing.step_of(timing.first_at_or_after(step));
-  for (int i = 0; used && i < kTries; ++i) {
+  for (int i = 0; used && i < kMaxTries; ++i) {
     const int64_t wanted = used(next);
     if (wanted == next) break;
     next = timing.step_of(timing.first_at_or_after(wanted));

@@ -11,11 +11,11 @@
 namespace gloam {
 namespace {
 
-constexpr double kCut = 4;  // standard deviations
+constexpr double kTruncationSigma = 4;  // standard deviations
 
 double cut_normal(uint64_t seed, uint32_t stream, int64_t k) {
   const double x = draw_normal({seed, stream}, static_cast<uint64_t>(k), 0);
-  return std::clamp(x, -kCut, kCut);
+  return std::clamp(x, -kTruncationSigma, kTruncationSigma);
 }
 
 }  // namespace
@@ -33,12 +33,12 @@ Result<SensorTiming> SensorTiming::make(Rational rate, const TimingOptions& opti
   timing.seed_ = seed;
   const double period = 1 / rate.value();
   const auto check = [&](const char* what, double jitter, double room) -> Status {
-    if (jitter <= room / (2 * kCut) * (1 + 1e-9)) return {};
+    if (jitter <= room / (2 * kTruncationSigma) * (1 + 1e-9)) return {};
     return Error{ErrorKind::kInput,
                  fmt::format("a {} of {} s at {:g} Hz would change the order of samples", what,
                              jitter, rate.value()),
                  options.loc,
-                 fmt::format("use at most {:.3g} s", std::max(0.0, room / (2 * kCut)))};
+                 fmt::format("use at most {:.3g} s", std::max(0.0, room / (2 * kTruncationSigma)))};
   };
   if (options.jitter > 0)
     GLOAM_TRY_STATUS(check("jitter", options.jitter, period - timing.timestep_));

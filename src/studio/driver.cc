@@ -12,11 +12,11 @@ namespace {
 using std::chrono::milliseconds;
 
 constexpr size_t kMaxRequests = 256;
-constexpr milliseconds kBeat{20};
-constexpr milliseconds kCameraLinger{3000};  // longer than the reload of a page takes
-constexpr milliseconds kRetry{1000};
-constexpr milliseconds kSettle{400};  // without a movement, before a picture counts as still
-constexpr int kStillPictures = 64;    // that a still picture is the mean of
+constexpr milliseconds kTickPeriod{20};
+constexpr milliseconds kCameraCloseDelay{3000};  // longer than the reload of a page takes
+constexpr milliseconds kRetryPeriod{1000};
+constexpr milliseconds kStillDelay{400};  // without a movement, before a picture counts as still
+constexpr int kStillPictures = 64;        // that a still picture is the mean of
 constexpr int kMeasuredPictures = 3;
 constexpr int kPreviewSamples = 4;                    // per pixel, of the first picture
 constexpr int kSmallWidth = 160, kSmallHeight = 120;  // [px] of a picture that is made at once
@@ -155,7 +155,7 @@ Driver::CameraReport Driver::report() const {
 void Driver::run() {
   std::unique_lock lock(mutex_);
   while (!stopping_) {
-    wake_.wait_for(lock, kBeat, [this] { return stopping_ || !requests_.empty(); });
+    wake_.wait_for(lock, kTickPeriod, [this] { return stopping_ || !requests_.empty(); });
     while (!stopping_ && !requests_.empty()) {
       const ControlRequest request = std::move(requests_.front());
       requests_.pop_front();
@@ -362,7 +362,7 @@ Status Driver::open_stream(double scale) {
 }
 
 bool Driver::is_still() const {
-  return simulation_.paused() && !drag_ && Clock::now() - last_moved_ > kSettle;
+  return simulation_.paused() && !drag_ && Clock::now() - last_moved_ > kStillDelay;
 }
 
 /// Coarser pictures while something moves, if the renderer is slow; all pixels when nothing does.
@@ -408,7 +408,7 @@ void Driver::measure_pictures(uint64_t pictures) {
   if (simulation_.paused()) {
     if (is_still() || !refreshed_at_ || full_width_ == 0) return;
     const double seconds = std::chrono::duration<double>(now - last_refresh_).count();
-    return scale_.add(seconds, seconds <= PictureScale::kTarget);
+    return scale_.add(seconds, seconds <= PictureScale::kTargetInterval);
   }
   if (is_preview_) return;
   measured_ += static_cast<int>(pictures);
@@ -432,14 +432,14 @@ void Driver::keep_camera() {
   bool wanted = false;
   {
     const std::lock_guard lock(mutex_);
-    wanted = clients_ > 0 || now - last_client_ < kCameraLinger;
+    wanted = clients_ > 0 || now - last_client_ < kCameraCloseDelay;
     if (stream_) report_.dropped = stream_->dropped();
     // Pictures that nobody was there to see are not encoded.
     picture_is_old_ |= std::exchange(someone_came_, false);
   }
   if (!wanted && stream_) close_camera();
   // A failure is in the report, where every client sees it.
-  if (wanted && !stream_ && now - last_attempt_ > kRetry) (void)open_camera(camera_).ok();
+  if (wanted && !stream_ && now - last_attempt_ > kRetryPeriod) (void)open_camera(camera_).ok();
 }
 
 void Driver::follow_pictures() {
@@ -459,7 +459,7 @@ void Driver::refresh_when_due() {
   const auto now = Clock::now();
   const uint64_t sequence = seen_sequence_;
   // One refresh at a time: a slow renderer must not be given a queue of them.
-  if (refreshed_at_ == sequence && now - last_refresh_ < kRetry) return;
+  if (refreshed_at_ == sequence && now - last_refresh_ < kRetryPeriod) return;
   refreshed_at_.reset();
   const bool paused = simulation_.paused();
   const bool slow_motion = speed_ < 1 && !paused;

@@ -7,7 +7,7 @@ namespace gloam::studio {
 /// a time of pictures that keep up, which doubles each time that the finer step did not.
 class PictureScale {
  public:
-  static constexpr double kTarget = 0.1;  ///< [s] between two pictures, at most
+  static constexpr double kTargetInterval = 0.1;  ///< [s] between two pictures, at most
 
   /// Share of the full width and height.
   double scale() const;

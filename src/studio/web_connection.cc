@@ -23,9 +23,9 @@ using beast::error_code;
 
 constexpr uint32_t kMaxHeader = 8 << 10;
 constexpr size_t kMaxMessage = 64 << 10;
-constexpr size_t kMaxWaitingTexts = 128;
+constexpr size_t kMaxQueuedTexts = 128;
 constexpr size_t kMaxDrained = 256 << 10;
-constexpr std::chrono::seconds kGoodbyeTime{2};
+constexpr std::chrono::seconds kCloseTimeout{2};
 
 /// Header fields that forbid a browser unsafe uses of any answer of this server.
 void add_safety_fields(http::fields& fields) {
@@ -103,7 +103,7 @@ bool WebConnection::let_in() {
 
 std::chrono::milliseconds WebConnection::patience() const {
   const std::chrono::milliseconds time = shared_.options.request_time;
-  return half_open_ == 0 ? time : std::min(time, web::HalfOpen::kPatience);
+  return half_open_ == 0 ? time : std::min(time, web::HalfOpen::kHeaderTimeout);
 }
 
 void WebConnection::refuse(unsigned status, std::string_view reason) {
@@ -132,7 +132,7 @@ void WebConnection::answer(http::status status, std::string_view type, std::stri
                       if (error) return;
                       if (keep_alive) return self->read_request();
                       self->stream_.socket().shutdown(net::ip::tcp::socket::shutdown_send, error);
-                      self->stream_.expires_after(kGoodbyeTime);
+                      self->stream_.expires_after(kCloseTimeout);
                       self->drain();
                     });
 }
@@ -190,7 +190,7 @@ void WebConnection::on_message(error_code error) {
 
 void WebConnection::send(std::string text) {
   if (closing_) return;
-  if (texts_.size() >= kMaxWaitingTexts)
+  if (texts_.size() >= kMaxQueuedTexts)
     return close(websocket::close_code::try_again_later, "The client reads too slowly.");
   texts_.push_back(std::make_shared<const std::string>(std::move(text)));
   pump();
@@ -249,7 +249,7 @@ void WebConnection::close(websocket::close_code code, std::string_view reason) {
   websocket_->async_close({code, beast::string_view(reason.data(), reason.size())},
                           [self = shared_from_this()](error_code) { self->last_moment_.cancel(); });
   // A client that does not read cannot be told: then the socket just goes.
-  last_moment_.expires_after(kGoodbyeTime);
+  last_moment_.expires_after(kCloseTimeout);
   last_moment_.async_wait([self = shared_from_this()](error_code error) {
     if (!error) beast::get_lowest_layer(*self->websocket_).close();
   });

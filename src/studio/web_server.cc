@@ -20,7 +20,7 @@ namespace net = boost::asio;
 using boost::system::error_code;
 using net::ip::tcp;
 
-constexpr std::chrono::milliseconds kStopTime{700};
+constexpr std::chrono::milliseconds kShutdownTimeout{700};
 
 }  // namespace
 
@@ -95,7 +95,7 @@ class WebServer::Impl {
     listener_.close();
     if (shared_.connections.empty()) return context_.stop();
     shared_.on_empty = [this] { context_.stop(); };
-    timer_.expires_after(kStopTime);
+    timer_.expires_after(kShutdownTimeout);
     timer_.async_wait([this](const error_code&) { context_.stop(); });
     const std::vector<WebConnection*> open(shared_.connections.begin(), shared_.connections.end());
     for (WebConnection* connection : open)

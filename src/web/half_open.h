@@ -14,13 +14,13 @@ namespace gloam::web {
 
 class HalfOpen {
  public:
-  static constexpr size_t kMost = 16;
-  static constexpr std::chrono::milliseconds kPatience{2000};  ///< for a whole request header
+  static constexpr size_t kMaxConnections = 16;
+  static constexpr std::chrono::milliseconds kHeaderTimeout{2000};  ///< for a whole request header
 
   /// `close` ends the connection when another needs its place. Returns its number, from 1.
   int64_t enter(std::function<void()> close) {
     open_.emplace(++last_, std::move(close));
-    if (open_.size() > kMost) {
+    if (open_.size() > kMaxConnections) {
       const auto oldest = open_.extract(open_.begin());
       oldest.mapped()();
     }

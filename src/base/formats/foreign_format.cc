@@ -64,7 +64,7 @@ constexpr std::array kSignatures = {
     Signature{"\xff\xd8\xff"sv, "is a JPEG image", kNoConverter},
     Signature{"%PDF-"sv, "is a PDF document", kNoConverter},
 };
-constexpr size_t kHead = 512;  // bytes of a file that are looked at
+constexpr size_t kSniffedBytes = 512;  // bytes of a file that are looked at
 constexpr std::string_view kMcapMagic = "\x89MCAP0\r\n"sv;
 
 ForeignFormat of_file(const Signature& signature, const fs::path& path) {
@@ -100,7 +100,7 @@ std::optional<ForeignFormat> foreign_format(const fs::path& path) {
   if (fs::is_directory(path, code)) return of_folder(path);
   if (!fs::is_regular_file(path, code)) return {};
   std::ifstream stream(path, std::ios::binary);
-  std::array<char, kHead> buffer{};
+  std::array<char, kSniffedBytes> buffer{};
   stream.read(buffer.data(), buffer.size());
   const std::string_view head(buffer.data(), static_cast<size_t>(stream.gcount()));
   if (stream.bad() || !stream.is_open()) return {};

@@ -23,7 +23,7 @@ using beast::error_code;
 
 constexpr uint32_t kMaxHeader = 8 << 10;
 constexpr size_t kMaxDrained = 256 << 10;
-constexpr std::chrono::seconds kGoodbyeTime{2};
+constexpr std::chrono::seconds kCloseTimeout{2};
 
 }  // namespace
 
@@ -43,7 +43,7 @@ void Connection::read_request() {
   request_.emplace();
   request_->header_limit(kMaxHeader);
   // One deadline for the whole header: sending it byte by byte gains no time.
-  stream_.expires_after(std::min(state_.options.request_time, web::HalfOpen::kPatience));
+  stream_.expires_after(std::min(state_.options.request_time, web::HalfOpen::kHeaderTimeout));
   http::async_read_header(
       stream_, buffer_, *request_,
       [self = shared_from_this()](error_code error, size_t) { self->on_request(error); });
@@ -77,11 +77,11 @@ void Connection::refuse(int status, std::string_view reason) {
   response.keep_alive(false);
   response.body() = std::string(reason) + "\n";
   response.prepare_payload();
-  stream_.expires_after(std::min(state_.options.request_time, web::HalfOpen::kPatience));
+  stream_.expires_after(std::min(state_.options.request_time, web::HalfOpen::kHeaderTimeout));
   http::async_write(stream_, response, [self = shared_from_this()](error_code error, size_t) {
     if (error) return;
     self->stream_.socket().shutdown(net::ip::tcp::socket::shutdown_send, error);
-    self->stream_.expires_after(kGoodbyeTime);
+    self->stream_.expires_after(kCloseTimeout);
     self->drain();
   });
 }
@@ -185,7 +185,7 @@ void Connection::close(websocket::close_code code, std::string_view reason) {
   websocket_->async_close({code, beast::string_view(reason.data(), reason.size())},
                           [self = shared_from_this()](error_code) { self->last_moment_.cancel(); });
   // A client that does not read cannot be told: then the socket just goes.
-  last_moment_.expires_after(kGoodbyeTime);
+  last_moment_.expires_after(kCloseTimeout);
   last_moment_.async_wait([self = shared_from_this()](error_code error) {
     if (!error) beast::get_lowest_layer(*self->websocket_).close();
   });

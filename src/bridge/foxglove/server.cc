@@ -17,7 +17,7 @@ namespace net = boost::asio;
 using boost::system::error_code;
 using net::ip::tcp;
 
-constexpr std::chrono::milliseconds kStopTime{700};
+constexpr std::chrono::milliseconds kShutdownTimeout{700};
 
 }  // namespace
 
@@ -81,7 +81,7 @@ class Server::Impl {
     ticker_.cancel();
     if (state_.connections.empty()) return context_.stop();
     state_.on_empty = [this] { context_.stop(); };
-    timer_.expires_after(kStopTime);
+    timer_.expires_after(kShutdownTimeout);
     timer_.async_wait([this](const error_code&) { context_.stop(); });
     const std::vector<Connection*> open(state_.connections.begin(), state_.connections.end());
     for (Connection* connection : open)

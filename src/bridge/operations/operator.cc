@@ -11,8 +11,8 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr double kStepTell = 0.02;  // between two reports of steps that are taken [s]
-constexpr double kSlowest = 1e-3, kFastest = 1e3;
+constexpr double kProgressPeriod = 0.02;  // between two reports of steps that are taken [s]
+constexpr double kMinRunSpeed = 1e-3, kMaxRunSpeed = 1e3;
 
 Error wrong_state(std::string message, std::string hint = {}) {
   return Error{ErrorKind::kUsage, std::move(message), {}, std::move(hint)};
@@ -118,8 +118,8 @@ Status Operator::step(int64_t count, const StepProgress& progress) {
     if (!status.ok()) break;
     done += now;
     const double seconds = std::chrono::duration<double>(Clock::now() - begin).count();
-    chunk = std::clamp<int64_t>(seconds < kStepTell / 2 ? 2 * chunk : chunk / 2, 1, 100000);
-    if (seconds >= kStepTell / 2 && seconds <= 2 * kStepTell) chunk = now;
+    chunk = std::clamp<int64_t>(seconds < kProgressPeriod / 2 ? 2 * chunk : chunk / 2, 1, 100000);
+    if (seconds >= kProgressPeriod / 2 && seconds <= 2 * kProgressPeriod) chunk = now;
     if (progress && !progress(done, count - done) && done < count) p.stop_stepping = true;
   }
   p.stepping = false;
@@ -128,7 +128,7 @@ Status Operator::step(int64_t count, const StepProgress& progress) {
 
 Status Operator::set_speed(std::optional<double> speed) {
   Private& p = *private_;
-  if (speed && !(*speed >= kSlowest && *speed <= kFastest))
+  if (speed && !(*speed >= kMinRunSpeed && *speed <= kMaxRunSpeed))
     return Error{ErrorKind::kInput, "the speed must be 0.001 to 1000"};
   if (speed) p.speed = *speed;
   p.is_fast = !speed;

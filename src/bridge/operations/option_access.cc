@@ -30,10 +30,10 @@ Status check_files(Scene scene, const ModelSource& source) {
 }  // namespace
 
 bool is_fixed_option(std::string_view path) {
-  constexpr std::string_view kFixed[] = {"sim",    "record", "bridge", "randomize",
-                                         "metric", "goal",   "scene"};
+  constexpr std::string_view kFixedOptions[] = {"sim",    "record", "bridge", "randomize",
+                                                "metric", "goal",   "scene"};
   const std::string_view table = path.substr(0, path.find('.'));
-  return std::ranges::find(kFixed, table) != std::end(kFixed);
+  return std::ranges::find(kFixedOptions, table) != std::end(kFixedOptions);
 }
 
 std::vector<OptionInfo> Operator::options() const {

@@ -12,7 +12,7 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr size_t kMostListed = 2000;
-constexpr int kDeepest = 4;
+constexpr int kMaxFolderDepth = 4;
 
 void list_models(const fs::path& folder, std::vector<Spawnable>* list) {
   std::error_code code;
@@ -20,7 +20,7 @@ void list_models(const fs::path& folder, std::vector<Spawnable>* list) {
   const auto options = fs::directory_options::skip_permission_denied;
   for (fs::recursive_directory_iterator it(folder, options, code), end; !code && it != end;
        it.increment(code)) {
-    if (it.depth() > kDeepest) it.disable_recursion_pending();
+    if (it.depth() > kMaxFolderDepth) it.disable_recursion_pending();
     std::string extension = it->path().extension().string();
     if (!it->is_regular_file(code) || it->path().filename() == "package.xml") continue;
     if (is_model_extension(extension) || is_mesh_extension(extension)) files.push_back(it->path());

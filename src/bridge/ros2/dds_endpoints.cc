@@ -19,7 +19,7 @@
 namespace gloam::bridge {
 namespace {
 
-constexpr auto kReplyPatience = std::chrono::milliseconds(500);
+constexpr auto kReplyTimeout = std::chrono::milliseconds(500);
 
 template <class Qos>
 void set_qos(const DdsEndpoint& endpoint, Qos* qos) {
@@ -60,7 +60,7 @@ class RawWriter final : public DdsWriter, private dds::DataWriterListener {
     qos.publish_mode().kind = dds::SYNCHRONOUS_PUBLISH_MODE;
     if (endpoint.is_large) {
       qos.publish_mode().kind = dds::ASYNCHRONOUS_PUBLISH_MODE;
-      qos.publish_mode().flow_controller_name = kLargePace;
+      qos.publish_mode().flow_controller_name = kLargeMessageFlow;
     }
     publisher_ = &publisher;
     writer_ = publisher.create_datawriter(&topic, qos, this);
@@ -79,8 +79,7 @@ class RawWriter final : public DdsWriter, private dds::DataWriterListener {
   bool reply(std::span<const uint8_t> data, const DdsRequest& request) override {
     {
       std::unique_lock lock(mutex_);
-      came_.wait_for(lock, kReplyPatience,
-                     [&] { return matched_.contains(request.writer_guid()); });
+      came_.wait_for(lock, kReplyTimeout, [&] { return matched_.contains(request.writer_guid()); });
     }
     RawMessage message{data, {}};
     rtps::WriteParams parameters;

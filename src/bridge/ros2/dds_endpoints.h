@@ -15,7 +15,7 @@ class Topic;
 namespace gloam::bridge {
 
 /// Name of the participant's flow controller that large messages go through.
-inline constexpr const char* kLargePace = "gloam_large";
+inline constexpr const char* kLargeMessageFlow = "gloam_large";
 
 /// An endpoint begins to exist, and ends.
 using EndpointEvent = std::function<void(const rtps::GUID_t&)>;

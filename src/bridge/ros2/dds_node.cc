@@ -56,7 +56,7 @@ dds::DomainParticipantQos participant_qos(const DdsNodeOptions& options) {
   // A picture sent at once would overflow its reader's socket, which holds 212,992 bytes by
   // default.
   const auto pace = std::make_shared<transport::FlowControllerDescriptor>();
-  pace->name = kLargePace;
+  pace->name = kLargeMessageFlow;
   pace->scheduler = transport::FlowControllerSchedulerPolicy::FIFO;
   pace->max_bytes_per_period = kBytesPerPeriod;
   pace->period_ms = kPeriod;

@@ -5,12 +5,12 @@
 namespace gloam::bridge {
 namespace {
 
-constexpr uint32_t kUsualSize = 256;         // first payload of a history; it grows [bytes]
-constexpr uint32_t kLargestInput = 1 << 24;  // beyond it a message is dropped [bytes]
+constexpr uint32_t kInitialPayloadSize = 256;  // first payload of a history; it grows [bytes]
+constexpr uint32_t kLargestInput = 1 << 24;    // beyond it a message is dropped [bytes]
 
 }  // namespace
 
-RawType::RawType(const std::string& name) : DdsType(name, kUsualSize) {}
+RawType::RawType(const std::string& name) : DdsType(name, kInitialPayloadSize) {}
 
 void RawType::write(const void* message, rtps::SerializedPayload_t* payload) const {
   const auto view = static_cast<const RawMessage*>(message)->view;

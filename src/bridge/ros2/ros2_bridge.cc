@@ -22,7 +22,7 @@
 namespace gloam::bridge {
 namespace {
 
-constexpr auto kLook = std::chrono::milliseconds(100);  // at recompiles and silent masters
+constexpr auto kPollPeriod = std::chrono::milliseconds(100);  // at recompiles and silent masters
 constexpr int kLargestDomain = 232;
 
 Result<int> domain_of(const Ros2Options& options) {
@@ -120,7 +120,7 @@ class Ros2Bridge final : public Bridge {
     std::unique_lock lock(mutex_);
     auto told = std::chrono::steady_clock::now() - std::chrono::hours(1);
     while (!stopping_) {
-      wake_.wait_for(lock, kLook, [this] { return stopping_ || is_due_; });
+      wake_.wait_for(lock, kPollPeriod, [this] { return stopping_ || is_due_; });
       if (stopping_) return;
       is_due_ = false;
       lock.unlock();

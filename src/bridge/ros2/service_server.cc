@@ -5,7 +5,7 @@
 namespace gloam::bridge {
 namespace {
 
-constexpr size_t kMostWaiting = 256;  // requests; further ones are dropped
+constexpr size_t kMaxQueuedRequests = 256;  // requests; further ones are dropped
 
 }  // namespace
 
@@ -26,7 +26,7 @@ Status ServiceServer::add(Ros2Service service) {
                         .qos = qos},
                        [this, self](const DdsSample& sample) {
                          const std::lock_guard lock(mutex_);
-                         if (queue_.size() >= kMostWaiting) {
+                         if (queue_.size() >= kMaxQueuedRequests) {
                            ++refused_;
                            return;
                          }

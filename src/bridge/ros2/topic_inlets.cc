@@ -7,7 +7,7 @@
 namespace gloam::bridge {
 namespace {
 
-constexpr auto kSilence = std::chrono::seconds(1);
+constexpr auto kLeaseTimeout = std::chrono::seconds(1);
 
 // The robot that goals are for; others' commands (a pose, a push, a reset) have no master.
 const SetVelocityGoal* velocity_goal(const Command& command) {
@@ -71,7 +71,7 @@ Status TopicInlets::obey_as_master(const std::string& robot, const std::string& 
   const std::lock_guard lock(mutex_);
   const auto now = Clock::now();
   Master& master = masters_[robot];
-  const bool is_free = master.lease == nullptr || now - master.last > kSilence;
+  const bool is_free = master.lease == nullptr || now - master.last > kLeaseTimeout;
   if (!is_free && master.writer != writer)
     return Error{ErrorKind::kUsage,
                  "robot '" + robot + "' is controlled by another publisher",
@@ -98,7 +98,7 @@ void TopicInlets::release_silent() {
   for (auto it = masters_.begin(); it != masters_.end();) {
     Master& master = it->second;
     if (is_paused && master.lease != nullptr) master.last = now;  // time rests
-    if (master.lease != nullptr && now - master.last <= kSilence) {
+    if (master.lease != nullptr && now - master.last <= kLeaseTimeout) {
       ++it;
       continue;
     }

@@ -9,8 +9,8 @@ namespace {
 
 using OutletClock = std::chrono::steady_clock;
 // A subscriber that comes back soon finds the stream as it was, its exposure and its encoder too.
-constexpr auto kLinger = std::chrono::seconds(2);
-constexpr int kSmallDepth = 100;  // of small messages, as tf2 keeps transforms
+constexpr auto kCloseDelay = std::chrono::seconds(2);
+constexpr int kSmallMessageDepth = 100;  // of small messages, as tf2 keeps transforms
 
 // Compressed pictures fit a socket at once, and do not wait behind raw ones.
 bool is_large_message(const TopicInfo& topic) {
@@ -26,7 +26,7 @@ Result<DdsEndpoint> endpoint_of(const TopicInfo& topic) {
   TopicQos qos = topic.qos;
   qos.is_reliable = true;
   const bool is_large = is_large_message(topic);
-  if (!is_large) qos.depth = std::max(qos.depth, kSmallDepth);
+  if (!is_large) qos.depth = std::max(qos.depth, kSmallMessageDepth);
   return DdsEndpoint{.topic = dds_topic(topic.name),
                      .type = type.dds_name,
                      .type_hash = type.hash,
@@ -81,7 +81,7 @@ Status TopicOutlets::follow(Group* group) {
   const auto now = OutletClock::now();
   const bool has_all = std::ranges::includes(group->open, wanted);
   if (has_all && wanted.size() == group->open.size()) group->wanted = now;
-  if (has_all && (group->open.empty() || now - group->wanted < kLinger)) return {};
+  if (has_all && (group->open.empty() || now - group->wanted < kCloseDelay)) return {};
   std::string names;
   for (const std::string& name : wanted) names += name + " ";
   if (!wanted.empty() && names == group->failed) return {};

@@ -15,12 +15,12 @@ constexpr std::string_view kPublicFull = "describe";  // what it is with one
 }  // namespace
 
 void Dispatcher::dispatch(const Envelope& from, std::span<const uint8_t> bytes) {
-  if (bytes.size() > kMostUnproven &&
+  if (bytes.size() > kMaxUnauthenticatedBytes &&
       !web::equal_in_constant_time(peek_token(bytes), services_.context.token))
     return refuse(
         from, {},
-        {ErrorKind::kUsage,
-         fmt::format("a request of more than {} bytes requires the token", kMostUnproven)});
+        {ErrorKind::kUsage, fmt::format("a request of more than {} bytes requires the token",
+                                        kMaxUnauthenticatedBytes)});
   const Result<Request> request = parse_request(bytes);
   if (!request.ok()) return refuse(from, {}, request.error());
   const Result<const Operation*> operation = admit(from, *request);

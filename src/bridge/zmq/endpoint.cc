@@ -20,18 +20,19 @@ namespace {
 constexpr size_t kZ85Key = 40;
 constexpr int kMaxKeyFile = 1 << 16;
 constexpr int kMaxSubscription = 1 << 12;  // bytes of a subscription
-constexpr int kReplies = 64;               // that wait for one client
+constexpr int kMaxQueuedReplies = 64;      // that wait for one client
 // Requests of one client that are read before the server takes them: each may be of
 // kMaxRequestBytes, whether or not the client has the token.
 constexpr int kRequests = 8;
 // Messages that wait for one subscriber. A stuck one holds as many pictures, which all stuck ones
 // share.
 constexpr int kStreamMessages = 64;
-constexpr int kHandshake = 5000;  // [ms]
+constexpr int kHandshakeTimeout = 5000;  // [ms]
 // A peer that has vanished from the network is noticed by TCP itself: the kernel probes a silent
-// connection after kIdle seconds, kProbes times, and gives up unacknowledged data after kUnsent.
-constexpr int kIdle = 5, kProbePause = 1, kProbes = 5;  // [s], [s], number
-constexpr int kUnsent = 10000;                          // [ms]
+// connection after kKeepaliveIdle seconds, kKeepaliveProbes times, and gives up unacknowledged data
+// after kUserTimeout.
+constexpr int kKeepaliveIdle = 5, kKeepaliveInterval = 1, kKeepaliveProbes = 5;  // [s], [s], number
+constexpr int kUserTimeout = 10000;                                              // [ms]
 
 Error key_error(const std::string& file, const SourceLoc& loc, std::string_view why) {
   return {ErrorKind::kUsage, fmt::format("CURVE key '{}' {}", file, why), loc,
@@ -114,15 +115,15 @@ void set_common(zmq::socket_t& socket, const std::string& host, const CurveKey& 
   socket.set(zmq::sockopt::linger, 0);
   socket.set(zmq::sockopt::ipv6, host.find(':') != std::string::npos);
   socket.set(zmq::sockopt::backlog, 256);
-  socket.set(zmq::sockopt::handshake_ivl, kHandshake);
+  socket.set(zmq::sockopt::handshake_ivl, kHandshakeTimeout);
   // No ZMTP heartbeats (ZMQ_HEARTBEAT_IVL): in libzmq up to 4.3.5 their timer asserts, which ends
   // the process, when it fires on a connection that was reset while its input was stopped by a full
   // pipe (libzmq issues 4364 and 3937). Any client could bring that about without a token.
   socket.set(zmq::sockopt::tcp_keepalive, 1);
-  socket.set(zmq::sockopt::tcp_keepalive_idle, kIdle);
-  socket.set(zmq::sockopt::tcp_keepalive_intvl, kProbePause);
-  socket.set(zmq::sockopt::tcp_keepalive_cnt, kProbes);
-  socket.set(zmq::sockopt::tcp_maxrt, kUnsent);
+  socket.set(zmq::sockopt::tcp_keepalive_idle, kKeepaliveIdle);
+  socket.set(zmq::sockopt::tcp_keepalive_intvl, kKeepaliveInterval);
+  socket.set(zmq::sockopt::tcp_keepalive_cnt, kKeepaliveProbes);
+  socket.set(zmq::sockopt::tcp_maxrt, kUserTimeout);
   if (key.secret.empty()) return;
   socket.set(zmq::sockopt::curve_server, true);
   socket.set(zmq::sockopt::curve_secretkey, key.secret);
@@ -168,7 +169,7 @@ Result<std::unique_ptr<Endpoints>> Endpoints::bind(const ZmqOptions& options) {
     set_common(endpoints->operations, options.host, key);
     endpoints->operations.set(zmq::sockopt::router_mandatory, true);
     endpoints->operations.set(zmq::sockopt::maxmsgsize, static_cast<int64_t>(kMaxRequestBytes));
-    endpoints->operations.set(zmq::sockopt::sndhwm, kReplies);
+    endpoints->operations.set(zmq::sockopt::sndhwm, kMaxQueuedReplies);
     endpoints->operations.set(zmq::sockopt::rcvhwm, kRequests);
     set_common(endpoints->streams, options.host, key);
     endpoints->streams.set(zmq::sockopt::maxmsgsize, static_cast<int64_t>(kMaxSubscription));

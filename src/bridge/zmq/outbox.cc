@@ -8,8 +8,8 @@
 namespace gloam::bridge::zeromq {
 namespace {
 
-constexpr size_t kMaxWaiting = 256;                    // messages of a topic
-constexpr size_t kMaxWaitingBytes = size_t{16} << 20;  // of a topic, but for the newest message
+constexpr size_t kMaxQueuedMessages = 256;            // messages of a topic
+constexpr size_t kMaxQueuedBytes = size_t{16} << 20;  // of a topic, but for the newest message
 
 }  // namespace
 
@@ -45,8 +45,8 @@ void Outbox::publish(Publication publication) {
     Queue& queue = queues_[publication.topic];
     queue.bytes += publication.bytes();
     queue.waiting.push_back(std::move(publication));
-    while (queue.waiting.size() > kMaxWaiting ||
-           (queue.waiting.size() > 1 && queue.bytes > kMaxWaitingBytes)) {
+    while (queue.waiting.size() > kMaxQueuedMessages ||
+           (queue.waiting.size() > 1 && queue.bytes > kMaxQueuedBytes)) {
       queue.bytes -= queue.waiting.front().bytes();
       queue.waiting.pop_front();
       ++dropped_;

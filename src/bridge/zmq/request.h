@@ -17,7 +17,7 @@ inline constexpr int kMaxDepth = 8;            ///< of arrays and maps in one an
 inline constexpr size_t kMaxNameBytes = 4096;  ///< of names, of ids and of tokens
 
 /// Longest request that is parsed before its token is known to be right [bytes].
-inline constexpr size_t kMostUnproven = 4096;
+inline constexpr size_t kMaxUnauthenticatedBytes = 4096;
 
 struct Request {
   std::string operation;

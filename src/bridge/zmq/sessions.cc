@@ -7,7 +7,7 @@ namespace {
 
 using std::chrono::seconds;
 
-constexpr seconds kSilence{10};
+constexpr seconds kSessionTimeout{10};
 constexpr size_t kMaxSessions = 1024;
 constexpr size_t kMaxClaims = 64;
 
@@ -25,7 +25,7 @@ void Sessions::note(const Envelope& client) {
 void Sessions::forget_silent() {
   const auto now = Clock::now();
   std::erase_if(sessions_, [now](const auto& each) {
-    return each.second.leases.empty() && now - each.second.last_seen > kSilence;
+    return each.second.leases.empty() && now - each.second.last_seen > kSessionTimeout;
   });
 }
 
@@ -34,7 +34,7 @@ int Sessions::count() const {
   const auto now = Clock::now();
   int present = 0;
   for (const auto& [id, session] : sessions_)
-    if (!session.leases.empty() || now - session.last_seen <= kSilence) ++present;
+    if (!session.leases.empty() || now - session.last_seen <= kSessionTimeout) ++present;
   return present;
 }
 

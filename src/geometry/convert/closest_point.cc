@@ -25,17 +25,17 @@ double squared_distance_to_edge(Vec3d p, Vec3d a, Vec3d b) {
 
 // Does the ray upwards from p, leaning a little lest it runs along faces, cross the triangle?
 // Möller and Trumbore 1997.
-constexpr Vec3d kUp{0.0271828, 0.0314159, 1};
+constexpr Vec3d kRayDirection{0.0271828, 0.0314159, 1};
 bool is_below(Vec3d p, const Triangle3d& t) {
   const Vec3d ab = t[1] - t[0], ac = t[2] - t[0];
-  const Vec3d h = cross(kUp, ac);
+  const Vec3d h = cross(kRayDirection, ac);
   const double det = dot(ab, h);
   if (det == 0) return false;
   const Vec3d from = p - t[0];
   const double u = dot(from, h) / det;
   if (u < 0 || u >= 1) return false;
   const Vec3d q = cross(from, ab);
-  const double v = dot(kUp, q) / det;
+  const double v = dot(kRayDirection, q) / det;
   return v >= 0 && u + v < 1 && dot(ac, q) / det > 0;
 }
 
@@ -48,7 +48,8 @@ bool may_be_below(Vec3d p, const BvhNode& node, size_t child) {
     from = std::max(from, std::min(a, b));
     to = std::min(to, std::max(a, b));
   };
-  cut(p.x, kUp.x, c.x, h.x), cut(p.y, kUp.y, c.y, h.y), cut(p.z, kUp.z, c.z, h.z);
+  cut(p.x, kRayDirection.x, c.x, h.x), cut(p.y, kRayDirection.y, c.y, h.y),
+      cut(p.z, kRayDirection.z, c.z, h.z);
   return from <= to;
 }
 
@@ -142,12 +143,13 @@ std::vector<SurfacePoint> sample_surface(const TriangleMesh& mesh, size_t count)
   out.reserve(count);
   size_t t = 0;
   // Along the list of triangles by area, within each by Roberts' R2 sequence (2018), folded.
-  constexpr double kPlastic = 1.32471795724474602596;
+  constexpr double kPlasticNumber = 1.32471795724474602596;
   for (size_t i = 0; i < count; ++i) {
     const double at = all * (static_cast<double>(i) + 0.5) / static_cast<double>(count);
     while (t + 1 < areas.size() && areas[t] <= at) ++t;
     const auto n = static_cast<double>(i + 1);
-    double u = std::fmod(n / kPlastic, 1.0), v = std::fmod(n / (kPlastic * kPlastic), 1.0);
+    double u = std::fmod(n / kPlasticNumber, 1.0),
+           v = std::fmod(n / (kPlasticNumber * kPlasticNumber), 1.0);
     if (u + v > 1) u = 1 - u, v = 1 - v;
     const Triangle3d corner = triangle_of(mesh, t);
     const Vec3d along = corner[1] - corner[0], aside = corner[2] - corner[0];

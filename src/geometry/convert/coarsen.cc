@@ -11,9 +11,9 @@
 namespace gloam {
 namespace {
 
-constexpr double kFinest = 256;  // cells along the longest side that are tried first
-constexpr double kOneWay = 0.5;  // least cosine between vertices that face one way
-constexpr double kLean = 1e-3;   // weight of the cell's mean beside the planes, of their own
+constexpr double kFinestResolution = 256;  // cells along the longest side that are tried first
+constexpr double kMinFacingCosine = 0.5;   // least cosine between vertices that face one way
+constexpr double kMeanWeight = 1e-3;  // weight of the cell's mean beside the planes, of their own
 
 // Quadric of the squared distance to planes, about a point nearby: p^T A p - 2 b p, and the mean of
 // the vertices.
@@ -26,7 +26,7 @@ struct Quadric {
 // Solves (A + lean) p = b + lean mean by Cramer's rule: symmetric and, thanks to the lean, regular.
 Vec3d lowest(const Quadric& q, double half_cell) {
   const Vec3d mean = q.sum * (1 / q.count);
-  const double lean = kLean * (q.xx + q.yy + q.zz);
+  const double lean = kMeanWeight * (q.xx + q.yy + q.zz);
   if (!(lean > 0)) return mean;
   const Vec3d x{q.xx + lean, q.xy, q.xz}, y{q.xy, q.yy + lean, q.yz}, z{q.xz, q.yz, q.zz + lean};
   const double det = dot(x, cross(y, z));
@@ -103,8 +103,9 @@ class Clustering {
       const double size = length_of(facing_[v]);
       const Vec3d n = size > 0 ? facing_[v] * (1 / size) : Vec3d{};
       std::vector<Begun>& begun = known[step(at.x) << 40 | step(at.y) << 20 | step(at.z)];
-      const auto alike = std::find_if(begun.begin(), begun.end(),
-                                      [&](const Begun& b) { return dot(b.facing, n) > kOneWay; });
+      const auto alike = std::find_if(begun.begin(), begun.end(), [&](const Begun& b) {
+        return dot(b.facing, n) > kMinFacingCosine;
+      });
       if (alike != begun.end()) {
         cluster_[v] = alike->cluster;
       } else {
@@ -149,7 +150,7 @@ class Clustering {
 TriangleMesh coarsened(const TriangleMesh& welded, size_t triangles) {
   if (welded.triangle_count() <= triangles) return welded;
   Clustering clustering(welded);
-  for (double cells = kFinest;;) {
+  for (double cells = kFinestResolution;;) {
     TriangleMesh out = clustering.with_cells(cells);
     if (out.triangle_count() <= triangles || cells < 2) {
       out.positions = clustering.positions();

@@ -18,18 +18,19 @@
 namespace gloam {
 namespace {
 
-constexpr double kAlike = 0.01;   // distance of surfaces that count as one, of the size
-constexpr double kFlat = 1e-4;    // thickness of what is flat, of the longest side
-constexpr double kPlate = 1e-3;   // thickness that it gets, of the longest side
-constexpr double kExact = 1e-5;   // gap of the hull of the mesh, over the diagonal
-constexpr double kSmooth = 1e-3;  // gap of a hull, over the longest side
-constexpr double kSeam = 1e-6;    // between vertices that are one, of the diagonal
-constexpr double kRoom = 0.25;    // volume that an open room encloses at least, over its hull's
+constexpr double kShapeTolerance = 0.01;  // distance of surfaces that count as one, of the size
+constexpr double kFlatThickness = 1e-4;   // thickness of what is flat, of the longest side
+constexpr double kPlateThickness = 1e-3;  // thickness that it gets, of the longest side
+constexpr double kHullTolerance = 1e-5;   // gap of the hull of the mesh, over the diagonal
+constexpr double kColliderHullTolerance = 1e-3;  // gap of a hull, over the longest side
+constexpr double kWeldTolerance = 1e-6;          // between vertices that are one, of the diagonal
+constexpr double kMinRoomVolume =
+    0.25;  // volume that an open room encloses at least, over its hull's
 // Vertices of nearly one place along the sweep that are compared.
-constexpr size_t kMostNear = 4096;
-constexpr double kFarthest = 1e9;   // [m] a vertex from the origin
-constexpr int kHullVertices = 128;  // vertices of a collider
-constexpr size_t kSamples = 4096;   // samples of a surface, to find its shape
+constexpr size_t kMaxSweepCandidates = 4096;
+constexpr double kMaxCoordinate = 1e9;  // [m] a vertex from the origin
+constexpr int kHullVertices = 128;      // vertices of a collider
+constexpr size_t kSamples = 4096;       // samples of a surface, to find its shape
 
 double diagonal(const TriangleMesh& mesh) {
   Vec3f low = mesh.positions[0], high = low;
@@ -44,7 +45,7 @@ double diagonal(const TriangleMesh& mesh) {
 // one place are near each other in the list. It leans, lest all of a grid's row are at one place.
 TriangleMesh without_seams(TriangleMesh mesh) {
   const std::vector<Vec3f>& p = mesh.positions;
-  const auto near = static_cast<float>(kSeam * diagonal(mesh));
+  const auto near = static_cast<float>(kWeldTolerance * diagonal(mesh));
   constexpr Vec3f kLine{0.7309f, 0.5413f, 0.4155f};  // direction of length 1
   std::vector<float> along;
   for (const Vec3f q : p) along.push_back(dot(q - p[0], kLine));
@@ -55,7 +56,8 @@ TriangleMesh without_seams(TriangleMesh mesh) {
   std::iota(vertex.begin(), vertex.end(), 0);
   for (size_t i = 0; i < order.size(); ++i) {
     const uint32_t a = order[i];
-    for (size_t k = i; k-- > 0 && along[a] - along[order[k]] <= 2 * near && i - k < kMostNear;) {
+    for (size_t k = i;
+         k-- > 0 && along[a] - along[order[k]] <= 2 * near && i - k < kMaxSweepCandidates;) {
       const uint32_t b = order[k];
       if (vertex[b] == b && length(p[a] - p[b]) <= near) {
         vertex[a] = b;
@@ -84,7 +86,7 @@ Result<TriangleMesh> welded(const TriangleMesh& mesh) {
       const double far = max_component(Vec3f{std::abs(p.x), std::abs(p.y), std::abs(p.z)});
       if (std::isnan(p.x) || std::isnan(p.y) || std::isnan(p.z))
         return Error{ErrorKind::kInput, "has a vertex that is not a number"};
-      if (far > kFarthest)
+      if (far > kMaxCoordinate)
         return Error{ErrorKind::kInput,
                      fmt::format("has a vertex {:.2g} m from its origin", far),
                      {},
@@ -156,10 +158,11 @@ class Converter {
   }
 
   Status find_hull() {
-    hull_ = convex_hull(out_.mesh.positions, {.tolerance = kExact * diagonal(out_.mesh)});
+    hull_ = convex_hull(out_.mesh.positions, {.tolerance = kHullTolerance * diagonal(out_.mesh)});
     if (!hull_.indices.empty()) box_ = box_around(hull_);
-    if (!hull_.indices.empty() && shortest_side(box_) >= kFlat * longest_side(box_)) return {};
-    const double thickness = kPlate * diagonal(out_.mesh);
+    if (!hull_.indices.empty() && shortest_side(box_) >= kFlatThickness * longest_side(box_))
+      return {};
+    const double thickness = kPlateThickness * diagonal(out_.mesh);
     const TriangleMesh plate = plate_of(out_.mesh, thickness);
     const bool is_finite = std::all_of(plate.positions.begin(), plate.positions.end(),
                                        [](Vec3f p) { return std::isfinite(p.x + p.y + p.z); });
@@ -176,10 +179,10 @@ class Converter {
   void find_mass() {
     const EdgeCount edges = count_edges(out_.mesh);
     MassProperties mass = mass_properties(out_.mesh);
-    out_.is_room =
-        options_.may_be_room && is_room_sized(out_.mesh) &&
-        (edges.is_closed() ? mass.volume < 0
-                           : enclosed_volume(out_.mesh) < -kRoom * mass_properties(hull_).volume);
+    out_.is_room = options_.may_be_room && is_room_sized(out_.mesh) &&
+                   (edges.is_closed() ? mass.volume < 0
+                                      : enclosed_volume(out_.mesh) <
+                                            -kMinRoomVolume * mass_properties(hull_).volume);
     if (out_.is_room) {
       out_.is_closed = edges.is_closed();
       out_.mass = mass_properties(hull_);
@@ -263,15 +266,15 @@ class Converter {
 
   MeshCollider hull_of(const std::vector<Vec3f>& points) const {
     MeshCollider out;
-    out.hull =
-        convex_hull(points, {.vertices = kHullVertices, .tolerance = kSmooth * longest_side(box_)});
+    out.hull = convex_hull(points, {.vertices = kHullVertices,
+                                    .tolerance = kColliderHullTolerance * longest_side(box_)});
     return out;
   }
 
   // The simplest shape that the mesh is, if any, its own hull the last. What the shape has and the
   // mesh has not, such as a missing lid, counts as well as the other way.
   std::optional<MeshCollider> recognised() {
-    const double most = kAlike * longest_side(box_);
+    const double most = kShapeTolerance * longest_side(box_);
     const std::vector<SurfacePoint> samples = sample_surface(out_.mesh, kSamples);
     std::optional<MeshQueries> mesh;
     const auto is_alike = [&](const MeshCollider& shape) {

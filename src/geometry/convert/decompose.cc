@@ -233,9 +233,9 @@ Result<std::vector<TriangleMesh>> work_unless_cancelled(const std::shared_ptr<Jo
     job->result = std::move(result);
     job->changed.notify_all();
   });
-  constexpr std::chrono::milliseconds kPoll{20};
+  constexpr std::chrono::milliseconds kPollPeriod{20};
   std::unique_lock lock(job->mutex);
-  while (!job->changed.wait_for(lock, kPoll, [&] { return job->result.has_value(); })) {
+  while (!job->changed.wait_for(lock, kPollPeriod, [&] { return job->result.has_value(); })) {
     if (!is_cancelled) continue;
     job->is_unwanted = true;
     left_behind.add(std::move(thread));

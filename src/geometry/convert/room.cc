@@ -20,7 +20,7 @@ constexpr size_t kEnoughPieces = 256;
 constexpr double kThickest = 0.1, kThickness = 0.05, kThinnest = 0.01;  // thickness of slabs [m]
 constexpr double kDepthStep = 0.02;                                     // [m]
 constexpr size_t kDepthSamples = 64;                                    // samples of a piece
-constexpr double kBent = 0.7;  // least cosine between the normals of what is one face
+constexpr double kMinFaceCosine = 0.7;  // least cosine between the normals of what is one face
 
 /// Tolerances of one face: `rough` = distance from its plane [m]; `gaps` = fraction of its
 /// outline's hull that is no part of it, and the same as an area [m²]. More is allowed where a slab
@@ -28,12 +28,12 @@ constexpr double kBent = 0.7;  // least cosine between the normals of what is on
 struct Slack {
   double rough, gaps, gap_area;
 };
-constexpr std::array<Slack, 6> kSlacks = {{{0.001, 0.005, 0.005},
-                                           {0.003, 0.02, 0.02},
-                                           {0.006, 0.04, 0.05},
-                                           {0.012, 0.08, 0.1},
-                                           {0.025, 0.15, 0.2},
-                                           {0.05, 0.3, 0.3}}};
+constexpr std::array<Slack, 6> kFaceTolerances = {{{0.001, 0.005, 0.005},
+                                                   {0.003, 0.02, 0.02},
+                                                   {0.006, 0.04, 0.05},
+                                                   {0.012, 0.08, 0.1},
+                                                   {0.025, 0.15, 0.2},
+                                                   {0.05, 0.3, 0.3}}};
 constexpr double kGapStep = 0.15, kBehind = 0.01;  // between points that are tried, behind it [m]
 
 struct Plane2 {
@@ -112,7 +112,7 @@ class Faces {
     }
     count_ = owner_.size();
     find_edges();
-    for (const Slack& slack : kSlacks) {
+    for (const Slack& slack : kFaceTolerances) {
       join(slack);
       if (count_ <= kEnoughPieces) break;
     }
@@ -165,7 +165,7 @@ class Faces {
   bool try_to_join(size_t into, size_t other, const Slack& slack) {
     Piece &a = pieces_[into], &b = pieces_[other];
     const double size_a = length_of(a.area), size_b = length_of(b.area);
-    if (dot(a.area, b.area) < kBent * size_a * size_b) return false;
+    if (dot(a.area, b.area) < kMinFaceCosine * size_a * size_b) return false;
     const Vec3d area = a.area + b.area;
     if (!(length_of(area) > 0)) return false;
     std::vector<Vec3d> points = a.points;

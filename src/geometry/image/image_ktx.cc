@@ -99,9 +99,9 @@ class KtxReader {
     if (u32(start - 4) != size)
       return bad(fmt::format("its level has {} bytes, expected {}", u32(start - 4), size));
     const auto heads = bytes_.subspan(kKtxHeaderBytes, metadata);
-    constexpr std::string_view kUp = "T=u";
-    const bool upwards =
-        std::search(heads.begin(), heads.end(), kUp.begin(), kUp.end()) != heads.end();
+    constexpr std::string_view kBottomUpOrientation = "T=u";
+    const bool upwards = std::search(heads.begin(), heads.end(), kBottomUpOrientation.begin(),
+                                     kBottomUpOrientation.end()) != heads.end();
     KtxImage out;
     for (uint32_t f = 0; f < faces; ++f) {
       if (type_ == kUnsignedByte)

@@ -68,7 +68,7 @@ bool read_png_rows(PngReader* reader, png_bytepp rows) {
 template <class Texel, class Image>
 Result<Image> decode(std::span<const uint8_t> bytes, const std::string& name, uint64_t max_pixels,
                      int* channels) {
-  constexpr bool kWide = sizeof(Texel) == 2;
+  constexpr bool kIs16Bit = sizeof(Texel) == 2;
   PngReader reader;
   Source source{bytes};
   const auto bad = [&](const std::string& what) {
@@ -86,10 +86,10 @@ Result<Image> decode(std::span<const uint8_t> bytes, const std::string& name, ui
   if (width * height > max_pixels)
     return bad(
         fmt::format("{} x {} is too large; the limit is {} pixels", width, height, max_pixels));
-  if (kWide && (png_get_bit_depth(reader.png, reader.info) != 16 ||
-                png_get_color_type(reader.png, reader.info) != PNG_COLOR_TYPE_GRAY))
+  if (kIs16Bit && (png_get_bit_depth(reader.png, reader.info) != 16 ||
+                   png_get_color_type(reader.png, reader.info) != PNG_COLOR_TYPE_GRAY))
     return bad("expected 16-bit grey");
-  if (!prepare(&reader, kWide)) return bad(reader.message);
+  if (!prepare(&reader, kIs16Bit)) return bad(reader.message);
 
   *channels = png_get_channels(reader.png, reader.info);
   const size_t row = png_get_rowbytes(reader.png, reader.info);

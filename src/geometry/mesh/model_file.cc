@@ -54,8 +54,9 @@ bool looks_like_collada(std::span<const uint8_t> bytes) {
 
 Result<ModelFile> read_by_format(const ModelSource& source) {
   const std::span<const uint8_t> bytes = source.bytes;
-  constexpr uint64_t kGrowth = 3;  // size unpacked over the file's, nearly at most
-  GLOAM_TRY_STATUS(check_memory(kGrowth * bytes.size(), fmt::format("unpacking '{}'", source.name),
+  constexpr uint64_t kUnpackFactor = 3;  // size unpacked over the file's, nearly at most
+  GLOAM_TRY_STATUS(check_memory(kUnpackFactor * bytes.size(),
+                                fmt::format("unpacking '{}'", source.name),
                                 "use a mesh with fewer triangles"));
   if (starts_with(bytes, "glTF")) return read_glb(source);
   if (starts_with(bytes, "ply\n") || starts_with(bytes, "ply\r")) return read_ply(source);

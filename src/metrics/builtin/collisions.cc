@@ -13,8 +13,8 @@
 namespace gloam {
 namespace {
 
-constexpr double kGap = 0.5;         // [s]
-constexpr double kSteepest = 0.707;  // |z| of the normal of what is stood on: 45 degrees
+constexpr double kMergeInterval = 0.5;      // [s]
+constexpr double kMinGroundNormal = 0.707;  // |z| of the normal of what is stood on: 45 degrees
 
 class CollisionMetric final : public RobotMetric {
  public:
@@ -35,7 +35,7 @@ class CollisionMetric final : public RobotMetric {
       const auto touch = contact_of(robot_, *instant.model, contact);
       if (!touch || is_support(*instant.model, *touch)) continue;
       Thing& thing = things_[static_cast<size_t>(touch->other_body)];
-      if (instant.time() - thing.last_touch >= kGap) {
+      if (instant.time() - thing.last_touch >= kMergeInterval) {
         ++thing.count;
         ++count_;
       }
@@ -65,7 +65,7 @@ class CollisionMetric final : public RobotMetric {
 
   static bool is_support(const mjModel& m, const RobotContact& touch) {
     const bool moves = m.body_weldid[touch.other_body] != 0;
-    return !moves && touch.steepness > kSteepest;
+    return !moves && touch.steepness > kMinGroundNormal;
   }
   std::string name_of_thing(int body) const {
     if (body == 0) return "world";

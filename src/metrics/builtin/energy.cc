@@ -47,11 +47,11 @@ class EnergyMetric final : public RobotMetric {
     out[1] = energy_;
   }
   void summarize(std::vector<MetricNumber>* numbers) const override {
-    constexpr double kLeastWay = 0.01;  // a way that a cost is told of [m]
+    constexpr double kMinDistance = 0.01;  // a way that a cost is told of [m]
     numbers->emplace_back("energy_J", energy_);
     numbers->emplace_back("power_max_W", peak_);
     const double weight = mass_ * gravity_;
-    if (moves_about_ && way_ > kLeastWay && weight > 0)
+    if (moves_about_ && way_ > kMinDistance && weight > 0)
       numbers->emplace_back("cost_of_transport", energy_ / (weight * way_));
   }
 

@@ -22,10 +22,10 @@ ShortestWays::ShortestWays(const CompiledWorld& world, const MetricInstant& inst
 double ShortestWays::length(const Vec3& from, const Vec3& to) const {
   const double straight = std::hypot(to.x - from.x, to.y - from.y);
   if (nav_ == nullptr) return straight;
-  constexpr double kReach = 1, kUp = 1.5;  // of places that are not on the mesh [m]
+  constexpr double kSnapRadius = 1, kSnapHeight = 1.5;  // of places that are not on the mesh [m]
   const NavMesh& mesh = nav_->mesh_of(0);
-  const NavPoint start = mesh.nearest(to_vec3d(from), kReach, kUp);
-  const NavPoint end = mesh.nearest(to_vec3d(to), kReach, kUp);
+  const NavPoint start = mesh.nearest(to_vec3d(from), kSnapRadius, kSnapHeight);
+  const NavPoint end = mesh.nearest(to_vec3d(to), kSnapRadius, kSnapHeight);
   if (start.ref == 0 || end.ref == 0 || !mesh.are_connected(start, end)) return straight;
   const double way = length_on_mesh(mesh, start, end);
   const double beside = flat_norm(to_vec3d(from) - start.p) + flat_norm(to_vec3d(to) - end.p);
@@ -36,7 +36,7 @@ double ShortestWays::length(const Vec3& from, const Vec3& to) const {
 double ShortestWays::length_on_mesh(const NavMesh& mesh, const NavPoint& from,
                                     const NavPoint& to) const {
   constexpr int kCorners = 8, kMostSearches = 256;
-  constexpr double kThere = 0.01;  // [m]
+  constexpr double kGoalTolerance = 0.01;  // [m]
   double length = 0;
   NavPoint at = from;
   for (int i = 0; i < kMostSearches && at.ref != 0; ++i) {
@@ -50,8 +50,8 @@ double ShortestWays::length_on_mesh(const NavMesh& mesh, const NavPoint& from,
       length += flat_norm(corners[k] - last);
       last = corners[k];
     }
-    if (count == 0 || flat_norm(last - at.p) < kThere) break;
-    if (flat_norm(last - to.p) < kThere) return length;
+    if (count == 0 || flat_norm(last - at.p) < kGoalTolerance) break;
+    if (flat_norm(last - to.p) < kGoalTolerance) return length;
     at = mesh.nearest(last, 0.1, 0.5);
   }
   return length + flat_norm(to.p - at.p);

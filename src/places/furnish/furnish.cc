@@ -158,9 +158,9 @@ void Furnisher::switches() {
     for (const Opening& o : layout_.openings(side)) {
       if (o.kind != OpeningKind::kDoor && o.kind != OpeningKind::kEntrance) continue;
       // On the side of the handle, else where the door stands when it is open.
-      constexpr double kBeside = 0.17;
-      for (const double along : {o.hinge_low ? o.high() + kBeside : o.low() - kBeside,
-                                 o.hinge_low ? o.low() - kBeside : o.high() + kBeside})
+      constexpr double kDoorMargin = 0.17;
+      for (const double along : {o.hinge_low ? o.high() + kDoorMargin : o.low() - kDoorMargin,
+                                 o.hinge_low ? o.low() - kDoorMargin : o.high() + kDoorMargin})
         if (layout_.hang_at(plate, against(layout_.room().clear, side, along, 0), 1.05)) break;
     }
   }

@@ -11,7 +11,7 @@ namespace {
 constexpr double kDesk = 1.6, kDeskDepth = 0.8;  // size of a workplace [m]
 constexpr double kScreen = 0.03;                 // thickness of what stands between two desks
 constexpr double kSeat = 0.95;                   // behind a desk
-constexpr double kApart = 0.025;                 // between desks in a row
+constexpr double kDeskGap = 0.025;               // between desks in a row
 
 }  // namespace
 
@@ -43,8 +43,8 @@ void Furnisher::open_office() {
   const double way = std::max(options_.passage + 0.25, 1.0);
   const double island = 2 * (kDeskDepth + kSeat) + 0.08;
   const int islands = std::max(1, static_cast<int>((r.width() - 0.6) / (island + way * 0.5)));
-  const int rows = std::clamp(static_cast<int>((r.depth() - way - 0.9) / (kDesk + kApart)), 1, 4);
-  const double length = rows * (kDesk + kApart) - kApart;
+  const int rows = std::clamp(static_cast<int>((r.depth() - way - 0.9) / (kDesk + kDeskGap)), 1, 4);
+  const double length = rows * (kDesk + kDeskGap) - kDeskGap;
   const double y0 = r.y1 - 0.7 - length;  // the way is on the corridor's side
   for (int i = 0; i < islands; ++i) {
     const double x = r.x0 + r.width() * (i + 0.5) / islands;
@@ -57,7 +57,7 @@ void Furnisher::open_office() {
         const int desk = make("desk", Vec3{kDeskDepth, kDesk, 0.74});
         const Prop::Box d = prop(desk).bounds();
         const double out = kScreen / 2 + 0.025 - d.low.x;
-        const Spot spot{x + (side == 0 ? out : -out), y0 + kDesk / 2 + row * (kDesk + kApart),
+        const Spot spot{x + (side == 0 ? out : -out), y0 + kDesk / 2 + row * (kDesk + kDeskGap),
                         side};
         if (layout_.fits(prop(desk), spot, true)) workplace(desk, spot);
       }

@@ -10,7 +10,7 @@ struct WallPiece {
   double from, to, low, high;
 };
 
-constexpr double kSliver = 0.001;  // width below which a piece is rounding [m]
+constexpr double kMinPieceWidth = 0.001;  // width below which a piece is rounding [m]
 
 // Pieces of a wall between `from` and `to`, `low` and `high`, around its openings.
 std::vector<WallPiece> cut(double from, double to, double low, double high,
@@ -20,13 +20,13 @@ std::vector<WallPiece> cut(double from, double to, double low, double high,
   std::vector<WallPiece> pieces;
   double at = from;
   for (const Opening& o : openings) {
-    if (o.low() - at > kSliver) pieces.push_back({at, o.low(), low, high});
-    if (o.sill - low > kSliver && o.kind == OpeningKind::kWindow)
+    if (o.low() - at > kMinPieceWidth) pieces.push_back({at, o.low(), low, high});
+    if (o.sill - low > kMinPieceWidth && o.kind == OpeningKind::kWindow)
       pieces.push_back({o.low(), o.high(), low, o.sill});
-    if (high - o.head > kSliver) pieces.push_back({o.low(), o.high(), o.head, high});
+    if (high - o.head > kMinPieceWidth) pieces.push_back({o.low(), o.high(), o.head, high});
     at = std::max(at, o.high());
   }
-  if (to - at > kSliver) pieces.push_back({at, to, low, high});
+  if (to - at > kMinPieceWidth) pieces.push_back({at, to, low, high});
   return pieces;
 }
 

@@ -6,11 +6,11 @@
 namespace gloam {
 namespace {
 
-constexpr double kWallGap = 0.02;    // behind furniture, for the skirting [m]
-constexpr double kThingGap = 0.02;   // between things
-constexpr double kLowEnough = 0.03;  // height of things that are walked over: rugs [m]
-constexpr double kOverhead = 1.9;    // height of things that are walked under
-constexpr double kStep = 0.05;       // step of the search
+constexpr double kWallGap = 0.02;            // behind furniture, for the skirting [m]
+constexpr double kThingGap = 0.02;           // between things
+constexpr double kMaxStepOverHeight = 0.03;  // height of things that are walked over: rugs [m]
+constexpr double kOverhead = 1.9;            // height of things that are walked under
+constexpr double kStep = 0.05;               // step of the search
 
 double along(Side side, const Spot& spot) { return runs_along_x(side) ? spot.x : spot.y; }
 
@@ -117,7 +117,7 @@ bool RoomLayout::fits(const Prop& prop, const Spot& spot, bool overlap_front) co
   const Prop::Box box = prop.bounds();
   const Rect rect = footprint(box, spot);
   if (!room_.clear.grown(-kWallGap + 1e-4).contains(rect)) return false;
-  const bool is_low = box.high.z<kLowEnough, is_overhead = box.low.z> kOverhead;
+  const bool is_low = box.high.z<kMaxStepOverHeight, is_overhead = box.low.z> kOverhead;
   if (!is_overhead && is_blocked(box, rect.grown(kThingGap - 1e-4))) return false;
   if (is_low || is_overhead) return true;
   for (const Rect& zone : keep_free_)
@@ -142,10 +142,10 @@ bool RoomLayout::leaves_way(const Rect& rect, const Rect& front) const {
 
 std::optional<Spot> RoomLayout::best(std::vector<std::pair<double, Spot>> scored,
                                      const Prop& prop) const {
-  constexpr size_t kTries = 60;
+  constexpr size_t kMaxPlacements = 60;
   std::stable_sort(scored.begin(), scored.end(),
                    [](const auto& a, const auto& b) { return a.first > b.first; });
-  for (size_t i = 0, tried = 0; i < scored.size() && tried < kTries; ++i) {
+  for (size_t i = 0, tried = 0; i < scored.size() && tried < kMaxPlacements; ++i) {
     if (scored[i].first < -1000) break;
     // Near misses of one spot tell little: neighbours of what failed are passed over at times.
     if (i > 12 && i % 3 != 0) continue;
@@ -191,7 +191,7 @@ std::optional<Spot> RoomLayout::find_free(const Prop& prop, const Score& score) 
 
 void RoomLayout::take(const Taken& taken) {
   taken_.push_back(taken);
-  if (taken.high > kLowEnough && taken.low < kOverhead) ways_.block(taken.rect);
+  if (taken.high > kMaxStepOverHeight && taken.low < kOverhead) ways_.block(taken.rect);
 }
 
 int RoomLayout::put(int index, const Spot& spot, bool loose) {

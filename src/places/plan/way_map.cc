@@ -7,7 +7,7 @@ namespace gloam {
 namespace {
 
 constexpr double kCell = 0.05;  // [m]
-constexpr double kReach = 0.15;
+constexpr double kZoneMargin = 0.15;
 
 }  // namespace
 
@@ -74,7 +74,7 @@ bool WayMap::connects(const Rect& thing, const std::vector<Point>& points,
     if (free[static_cast<size_t>(index_of(point))] != 2) return false;
   return std::all_of(zones.begin(), zones.end(), [&](const Rect& zone) {
     if (zone.width() <= 0) return true;
-    const Rect near = zone.grown(kReach);
+    const Rect near = zone.grown(kZoneMargin);
     for (int j = row(near.y0); j <= row(near.y1); ++j)
       for (int i = column(near.x0); i <= column(near.x1); ++i)
         if (free[static_cast<size_t>(j * columns_ + i)] == 2) return true;

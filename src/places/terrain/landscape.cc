@@ -79,11 +79,11 @@ double Landscape::from_road(double x, double y) const {
 // The hills along it, smoothed, level at the origin.
 void Landscape::grade_road() {
   const int half = static_cast<int>(std::ceil((o_.length / 2 + kRoadAway) / kRoadStep));
-  constexpr int kReach = 6;
+  constexpr int kSmoothingRadius = 6;
   for (int i = -half; i <= half; ++i) {
     double sum = 0, weight = 0;
-    for (int k = -kReach; k <= kReach; ++k) {
-      const double x = (i + k) * kRoadStep, w = kReach + 1 - std::abs(k);
+    for (int k = -kSmoothingRadius; k <= kSmoothingRadius; ++k) {
+      const double x = (i + k) * kRoadStep, w = kSmoothingRadius + 1 - std::abs(k);
       sum += w * hills(x, road_y(x)), weight += w;
     }
     const double x = i * kRoadStep;

@@ -20,9 +20,9 @@ constexpr size_t kMostPatches = 2600;
 
 // Would a trunk there touch a stone that can move?
 bool has_loose(const Place& place, double x, double y) {
-  constexpr double kClear = 0.8;  // [m]
+  constexpr double kMinRockDistance = 0.8;  // [m]
   return std::any_of(place.placements().begin(), place.placements().end(), [&](const Placement& p) {
-    return p.loose && std::hypot(p.X_WP.p.x - x, p.X_WP.p.y - y) < kClear;
+    return p.loose && std::hypot(p.X_WP.p.x - x, p.X_WP.p.y - y) < kMinRockDistance;
   });
 }
 

@@ -12,7 +12,7 @@ namespace {
 
 constexpr Vec3 kRock{0.36, 0.28, 0.2};  // size of a rock [m]
 // Distance of a rock's middle to the border: the fence is inside it
-constexpr double kClearOfFence = 1.0;
+constexpr double kFenceClearance = 1.0;
 
 // Pose of a stone at rest on three points of the ground's collider. Empty: it would slide, or the
 // ground rises between them.
@@ -81,7 +81,7 @@ class Stones {
     const uint64_t variant = static_cast<uint64_t>(dice_.integer(0, 4));
     const bool loose = dice_.chance(o_.loose);
     const double radius = std::hypot(kRock.x, kRock.y) / 2;
-    if (!land_.is_free(x, y, kClearOfFence) || std::hypot(x, y) < 2 || is_taken(x, y, radius))
+    if (!land_.is_free(x, y, kFenceClearance) || std::hypot(x, y) < 2 || is_taken(x, y, radius))
       return;
     const int made = make(place_, "rock", variant, kRock);
     std::optional<Pose> pose;

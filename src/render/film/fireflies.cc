@@ -8,9 +8,9 @@
 namespace gloam {
 namespace {
 
-constexpr float kRatio = 4;           // to the third brightest of the pixels around
+constexpr float kFireflyRatio = 4;    // to the third brightest of the pixels around
 constexpr int kRadius = 2;            // of those [px]
-constexpr int kSpread = 16;           // how far the light of a firefly is spread [px]
+constexpr int kSpreadRadius = 16;     // how far the light of a firefly is spread [px]
 constexpr float kMostSpread = 0.02f;  // fraction of a firefly's limit that one pixel may get of it
 constexpr float kMostKept = 10;       // light of a firefly, in that of all pixels around it
 constexpr float kFacing = 0.9f;       // cosine between surfaces that take each other's light
@@ -55,8 +55,8 @@ class Fireflies {
   /// Spreads the light in the order of the rows, so sums do not depend on threads.
   void spread() {
     parallel_for("fireflies", height_, [&](int64_t row) {
-      const int y = static_cast<int>(row), last = std::min(height_ - 1, y + kSpread);
-      for (int v = std::max(0, y - kSpread); v <= last; ++v) {
+      const int y = static_cast<int>(row), last = std::min(height_ - 1, y + kSpreadRadius);
+      for (int v = std::max(0, y - kSpreadRadius); v <= last; ++v) {
         for (const Firefly& fly : rows_[static_cast<size_t>(v)]) {
           for (int x = first_x(fly); x <= last_x(fly); ++x) {
             if (faces(index(fly.x, v), index(x, y)))
@@ -72,16 +72,16 @@ class Fireflies {
     return values.size() == film.pixel_count() ? std::span(values) : std::span<const Vec3f>();
   }
   size_t index(int x, int y) const { return static_cast<size_t>(y) * width_ + x; }
-  int first_x(const Firefly& fly) const { return std::max(0, fly.x - kSpread); }
-  int last_x(const Firefly& fly) const { return std::min(width_ - 1, fly.x + kSpread); }
+  int first_x(const Firefly& fly) const { return std::max(0, fly.x - kSpreadRadius); }
+  int last_x(const Firefly& fly) const { return std::min(width_ - 1, fly.x + kSpreadRadius); }
   bool faces(size_t i, size_t j) const {
     return normal_.empty() || dot(normal_[i], normal_[j]) >= kFacing;
   }
   Vec3f albedo(size_t i) const {
     if (albedo_.empty()) return {1, 1, 1};
-    constexpr float kLeast = 0.02f;  // black surfaces reflect a little too
+    constexpr float kMinReflectance = 0.02f;  // black surfaces reflect a little too
     const Vec3f a = albedo_[i];
-    return {max(a.x, kLeast), max(a.y, kLeast), max(a.z, kLeast)};
+    return {max(a.x, kMinReflectance), max(a.y, kMinReflectance), max(a.z, kMinReflectance)};
   }
 
   /// Brings the pixel down to its limit if it is a firefly.
@@ -98,7 +98,7 @@ class Fireflies {
     }
     // Among all-black neighbours there is nothing to compare with: the pixel stays.
     const size_t i = index(x, y);
-    const float limit = kRatio * third;
+    const float limit = kFireflyRatio * third;
     if (!(limit > 0 && brightness_[i] > limit)) return;
     const Vec3f whole = out_[i];
     out_[i] *= limit / brightness_[i];
@@ -117,8 +117,8 @@ class Fireflies {
   /// would be no firefly here.
   float light_around(const Firefly& fly, float limit) const {
     float sum = 0;
-    const int last = std::min(height_ - 1, fly.y + kSpread);
-    for (int v = std::max(0, fly.y - kSpread); v <= last; ++v) {
+    const int last = std::min(height_ - 1, fly.y + kSpreadRadius);
+    for (int v = std::max(0, fly.y - kSpreadRadius); v <= last; ++v) {
       for (int u = first_x(fly); u <= last_x(fly); ++u) sum += min(brightness_[index(u, v)], limit);
     }
     return sum;
@@ -128,8 +128,8 @@ class Fireflies {
   Vec3f reflected_around(const Firefly& fly) const {
     Vec3f sum;
     const size_t i = index(fly.x, fly.y);
-    const int last = std::min(height_ - 1, fly.y + kSpread);
-    for (int v = std::max(0, fly.y - kSpread); v <= last; ++v) {
+    const int last = std::min(height_ - 1, fly.y + kSpreadRadius);
+    for (int v = std::max(0, fly.y - kSpreadRadius); v <= last; ++v) {
       for (int u = first_x(fly); u <= last_x(fly); ++u) {
         if (faces(i, index(u, v))) sum += albedo(index(u, v));
       }

@@ -9,12 +9,12 @@ namespace {
 
 using WindowLight = Vec3Of<double>;
 
-constexpr int kReach = 32;             // of the windows that keep their light, to each side [px]
+constexpr int kWindowRadius = 32;      // of the windows that keep their light, to each side [px]
 constexpr double kMostWindowGain = 8;  // of one pixel and channel
 constexpr double kMostWholeGain = 2;   // of the picture, after that of its windows
 
-/// Sums over `n` values `stride` apart, each over those up to kReach away. Running sums in double
-/// precision: lamps and the dark beside them are in one picture.
+/// Sums over `n` values `stride` apart, each over those up to kWindowRadius away. Running sums in
+/// double precision: lamps and the dark beside them are in one picture.
 void sum_windows(WindowLight* values, int n, ptrdiff_t stride, std::vector<WindowLight>* scratch) {
   scratch->resize(static_cast<size_t>(n) + 1);
   WindowLight sum;
@@ -24,8 +24,8 @@ void sum_windows(WindowLight* values, int n, ptrdiff_t stride, std::vector<Windo
   }
   (*scratch)[static_cast<size_t>(n)] = sum;
   for (int i = 0; i < n; ++i) {
-    const auto first = static_cast<size_t>(std::max(0, i - kReach));
-    const auto end = static_cast<size_t>(std::min(n, i + kReach + 1));
+    const auto first = static_cast<size_t>(std::max(0, i - kWindowRadius));
+    const auto end = static_cast<size_t>(std::min(n, i + kWindowRadius + 1));
     values[i * stride] = (*scratch)[end] - (*scratch)[first];
   }
 }

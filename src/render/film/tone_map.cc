@@ -24,8 +24,8 @@ float to_positive(float x) { return x > 0 ? min(x, 1e6f) : 0.0f; }  // also for 
 float max_luminance(float ev100) { return 1.2f * std::exp2(ev100); }
 
 float tone_curve(float x) {
-  constexpr float kAbove = 1 - kShoulder;
-  return x <= kShoulder ? x : 1 - kAbove * std::exp((kShoulder - x) / kAbove);
+  constexpr float kHeadroom = 1 - kShoulder;
+  return x <= kShoulder ? x : 1 - kHeadroom * std::exp((kShoulder - x) / kHeadroom);
 }
 
 void tone_map(const std::vector<Vec3f>& radiance, int width, int height,

@@ -11,10 +11,10 @@ namespace {
 
 /// Solids that every ray is tested against, at most: beyond a few that span the scene the tree is
 /// faster where no lanes share the test.
-constexpr size_t kMostScanned = 12;
+constexpr size_t kMaxUnboundedSolids = 12;
 constexpr float kLeastArea = 0.125f;
 /// A tree over instances is made anew when moving them has made it so much worse.
-constexpr float kWornOut = 1.3f;
+constexpr float kRebuildRatio = 1.3f;
 
 /// Boxes of the triangles, over the shutter.
 std::vector<BvhBox> triangle_boxes(const MeshView& mesh) {
@@ -56,7 +56,7 @@ BvhBox moved(const BvhBox& b, const Affine3f& X_WG) {
 
 void BvhScene::build(const RenderScene& scene) {
   drawn_version_ = scene.drawn_version();
-  scanned_ = ScanTable::choose(scene, kMostScanned, kLeastArea);
+  scanned_ = ScanTable::choose(scene, kMaxUnboundedSolids, kLeastArea);
   instances_.clear();
   still_.clear();
   const std::vector<InstanceView>& instances = scene.instances();
@@ -208,7 +208,7 @@ void BvhScene::place_top(const std::vector<BvhBox>& boxes, bool anew, TopTree* t
   };
   if (anew) {
     build();
-  } else if (refit_bvh(boxes, &top->tree) > kWornOut * top->cost) {
+  } else if (refit_bvh(boxes, &top->tree) > kRebuildRatio * top->cost) {
     build();
   }
   const auto in_all = [&](BvhRef ref) {

@@ -6,7 +6,7 @@ namespace gloam {
 namespace {
 
 constexpr int kSplitBins = 12;
-constexpr size_t kFew = 5;  // so many are halved along their longest extent
+constexpr size_t kHalvedLights = 5;  // so many are halved along their longest extent
 
 struct Box {
   Vec3f low{1e30f, 1e30f, 1e30f}, high{-1e30f, -1e30f, -1e30f};
@@ -103,7 +103,8 @@ size_t split_lights(std::span<LightItem> items, bool evenly) {
   }
   const Vec3f size = keys.size();
   const int longest = size.x >= size.y && size.x >= size.z ? 0 : (size.y >= size.z ? 1 : 2);
-  if (evenly || items.size() <= kFew || !(size[longest] > 0)) return halve(items, key, longest);
+  if (evenly || items.size() <= kHalvedLights || !(size[longest] > 0))
+    return halve(items, key, longest);
 
   Bins bins[3] = {{keys.low.x, keys.high.x}, {keys.low.y, keys.high.y}, {keys.low.z, keys.high.z}};
   for (const LightItem& item : items) {

@@ -10,7 +10,8 @@ namespace {
 
 constexpr uint32_t kFirstPair = LightTreeView::kRoots + 1;  // an even row
 constexpr size_t kOneTask = 4096;                           // lights that one thread builds over
-constexpr int kDeep = 48;  // from this depth on sets are halved: no order of lights makes a chain
+constexpr int kHalvingDepth =
+    48;  // from this depth on sets are halved: no order of lights makes a chain
 
 /// A set of lights whose node is known and whose descendants are not: they fill the rows from
 /// `pairs` on, two for each light but one.
@@ -105,7 +106,7 @@ class Builder {
 
  private:
   void split(const Range& range, Range* a, Range* b) {
-    const size_t count = split_lights(range.items, range.depth >= kDeep);
+    const size_t count = split_lights(range.items, range.depth >= kHalvingDepth);
     const auto below = static_cast<uint32_t>(2 * (count - 1));
     *a = {range.items.first(count), range.pairs, range.pairs + 2, range.depth + 1};
     *b = {range.items.subspan(count), range.pairs + 1, range.pairs + 2 + below, range.depth + 1};

@@ -84,8 +84,8 @@ Status PoseMotion::look_at(int64_t step) {
   const bool is_back = !before_ || before_->step > step;
   const bool is_far = after_ && step - after_->step > kFarSteps;
   if (is_back || is_far) {
-    constexpr double kSlack = 1;  // [s] by which states may lie apart
-    const double dt = step_time_ * static_cast<double>(step - first_->step) - kSlack;
+    constexpr double kMaxStateGap = 1;  // [s] by which states may lie apart
+    const double dt = step_time_ * static_cast<double>(step - first_->step) - kMaxStateGap;
     GLOAM_TRY_STATUS(
         begin_at(first_->time + static_cast<uint64_t>(std::llround(std::max(0.0, dt) * 1e9))));
     if (!before_ || before_->step > step) GLOAM_TRY_STATUS(begin_at(first_->time));

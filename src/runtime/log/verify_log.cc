@@ -100,9 +100,9 @@ class Verifier {
 
   // In short stretches, so that the caller may cancel at any time.
   Status step_to(int64_t step) {
-    constexpr int64_t kStretch = 16;
+    constexpr int64_t kStepsPerCheck = 16;
     while (at_ < step) {
-      const int64_t next = std::min(at_ + kStretch, step);
+      const int64_t next = std::min(at_ + kStepsPerCheck, step);
       GLOAM_TRY_STATUS(stepper_->run_until(next));
       at_ = next;
       GLOAM_TRY_STATUS(tell());

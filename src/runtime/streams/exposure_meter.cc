@@ -12,7 +12,7 @@ namespace {
 
 constexpr int kProbeWidth = 32;  // [px]
 constexpr int kProbeSamples = 4;
-constexpr size_t kRemembered = 256;
+constexpr size_t kMaxStoredValues = 256;
 
 CameraRequest probe_request(const CameraOptions& camera, std::optional<int> max_depth) {
   CameraRequest request;
@@ -132,7 +132,7 @@ Status ExposureMeter::meter(const Snapshot& snapshot) {
   if (!values_.empty() && instant <= values_.rbegin()->first)
     values_.clear();  // the simulation was reset
   values_[instant] = newest_ = automatic_.ev100();
-  if (values_.size() > kRemembered) values_.erase(values_.begin());
+  if (values_.size() > kMaxStoredValues) values_.erase(values_.begin());
   changed_.notify_all();
   return {};
 }
@@ -146,8 +146,8 @@ double ExposureMeter::ev100_at(int64_t step) {
   if (required_) {
     changed_.wait(lock, known);
   } else {
-    constexpr auto kPatience = std::chrono::milliseconds(50);
-    changed_.wait_for(lock, kPatience, known);
+    constexpr auto kWaitTimeout = std::chrono::milliseconds(50);
+    changed_.wait_for(lock, kWaitTimeout, known);
   }
   if (values_.empty()) return newest_;
   const auto after = values_.upper_bound(due);

@@ -65,11 +65,11 @@ std::vector<SensorCost> SensorCosts::list() const {
 }
 
 double rate_of(const std::function<int64_t(int64_t step)>& due, Rational timestep) {
-  constexpr double kLooked = 10;  // [s]
-  const auto end = static_cast<int64_t>(kLooked / timestep.value());
+  constexpr double kRateWindow = 10;  // [s]
+  const auto end = static_cast<int64_t>(kRateWindow / timestep.value());
   int64_t count = 0;
   for (int64_t step = due(0); step < end; step = due(step + 1)) ++count;
-  return static_cast<double>(count) / kLooked;
+  return static_cast<double>(count) / kRateWindow;
 }
 
 }  // namespace gloam

@@ -11,7 +11,7 @@
 namespace gloam {
 namespace {
 
-constexpr size_t kMostWaiting = 1024;  // steps of which samples are not complete
+constexpr size_t kMaxIncompleteSteps = 1024;  // steps of which samples are not complete
 
 }  // namespace
 
@@ -72,7 +72,7 @@ void TopicFeed::take_sample(Gathering* gathering, size_t part, const SensorMessa
   auto& waiting = gathering->by_step;
   // Time has begun anew, or a sensor drops its samples: what cannot be completed goes.
   if (!waiting.empty() && message.step < waiting.begin()->first && part == 0) waiting.clear();
-  if (waiting.size() > kMostWaiting) waiting.erase(waiting.begin());
+  if (waiting.size() > kMaxIncompleteSteps) waiting.erase(waiting.begin());
   Gathering::Samples& samples = waiting[message.step];
   samples.messages.resize(outlet.topic->streams.size());
   samples.messages[part] = message;

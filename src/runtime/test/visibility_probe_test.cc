@@ -39,7 +39,7 @@ TEST(VisibilityProbe, IsWhatTheMediumIsWrittenWithAndExtinctionsAddUp) {
   const Snapshot snapshot = simulation->latest();
   EXPECT_NEAR(seen_at(world, snapshot, {-1, 0, 0}), 40, 0.01);
   EXPECT_NEAR(seen_at(world, snapshot, {1, 0, 0}), 1 / (1 / 40.0 + 1 / 10.0), 0.01);
-  EXPECT_EQ(seen_at(world, snapshot, {5, 0, 0}), VisibilityProbe::kClear);
+  EXPECT_EQ(seen_at(world, snapshot, {5, 0, 0}), VisibilityProbe::kMaxVisibility);
 }
 
 TEST(VisibilityProbe, OfSmokeIsThatOfItsConcentrationAndInTheMetrics) {
@@ -69,7 +69,7 @@ rate = 1e-3
                                               : -1;
   };
   const auto simulation = simulate(world);
-  EXPECT_EQ(visibility(simulation->latest()), VisibilityProbe::kClear);
+  EXPECT_EQ(visibility(simulation->latest()), VisibilityProbe::kMaxVisibility);
   ASSERT_TRUE(simulation->step(225).ok());  // 0.45 s: between two ticks
   const Snapshot snapshot = simulation->latest();
   const auto solver = PoseSolver::create(world.compiled()).value();
@@ -83,7 +83,7 @@ rate = 1e-3
   ASSERT_LT(expected(14, 10, 10), 1e4);
   EXPECT_NEAR(seen_at(world, snapshot, {0.95f, 0.05f, 0.05f}), expected(14, 10, 10),
               1e-3 * expected(14, 10, 10));
-  EXPECT_EQ(seen_at(world, snapshot, {0.45f, 0.05f, 0.05f}), VisibilityProbe::kClear)
+  EXPECT_EQ(seen_at(world, snapshot, {0.45f, 0.05f, 0.05f}), VisibilityProbe::kMaxVisibility)
       << "inside of the ball there is no smoke";
   // The ball of 0.2 m is at 0.45 m: what its robot sees is that of the air around it.
   const double seen = visibility(snapshot);

@@ -58,8 +58,8 @@ fs::path find_reading(const fs::path& path) {
 }
 
 void tell_if_slow(const Replicate& replicate, const fs::path& file) {
-  constexpr double kSlow = 2;  // [s]
-  if (replicate.seconds < kSlow) return;
+  constexpr double kSlowReplication = 2;  // [s]
+  if (replicate.seconds < kSlowReplication) return;
   log_warning(
       "{}:{}: MuJoCo takes about {:.0f} s for a <replicate> of {} copies, and four times as long "
       "for twice as many: nest a <replicate> of {:.0f} in one of {:.0f} (docs/scenes.md)",

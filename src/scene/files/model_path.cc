@@ -63,9 +63,9 @@ bool is_container(const fs::path& path) {
 }
 
 Status refuse_mesh(const fs::path& path, const std::string& as_written, const SourceLoc& loc) {
-  constexpr std::string_view kUnread[] = {".msh", ".fbx"};
+  constexpr std::string_view kUnsupportedMeshes[] = {".msh", ".fbx"};
   if (!is_model_file(path) &&
-      std::ranges::find(kUnread, lower_extension(path)) == std::end(kUnread))
+      std::ranges::find(kUnsupportedMeshes, lower_extension(path)) == std::end(kUnsupportedMeshes))
     return {};
   return Error{ErrorKind::kInput,
                fmt::format("'{:.200}' is a mesh, but a model is expected here", as_written), loc,

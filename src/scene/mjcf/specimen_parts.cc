@@ -119,7 +119,7 @@ std::optional<Attributes> instead_for(const MjcfElement& element, std::string_vi
   struct Instead {
     std::string_view section, attributes, values;
   };
-  static constexpr Instead kInstead[] = {
+  static constexpr Instead kReplacements[] = {
       {"mujoco/asset/mesh", "builtin", "name=x builtin=sphere params=1"},
       {"mujoco/body/attach", "frame", "prefix=p frame=fr"},
       {"mujoco/body/attach", "model", "prefix=p model=mo"},
@@ -142,7 +142,7 @@ std::optional<Attributes> instead_for(const MjcfElement& element, std::string_vi
       {"mujoco/sensor/plugin", "objtype objname", "objtype=body objname=b"},
       {"mujoco/sensor", "refname reftype", "objtype=body objname=b reftype=body refname=b2"},
   };
-  for (const Instead& row : kInstead) {
+  for (const Instead& row : kReplacements) {
     const std::string_view above = element.parent == nullptr ? "" : element.parent->path;
     if (above != row.section && element.path != row.section) continue;
     for (const std::string_view name : split_words(row.attributes)) {

@@ -89,8 +89,8 @@ Result<int> find_camera(const RenderDescription& description, const std::string&
 }  // namespace
 
 int path_depth(const RenderOptions& render, bool has_media) {
-  constexpr int kUsual = 5, kInMedia = 24;
-  return render.max_depth.value_or(has_media ? kInMedia : kUsual);
+  constexpr int kDefaultDepth = 5, kDefaultDepthInMedia = 24;
+  return render.max_depth.value_or(has_media ? kDefaultDepthInMedia : kDefaultDepth);
 }
 
 Pose to_pose(const Affine3f& X) { return {{X.p.x, X.p.y, X.p.z}, quaternion_of(X)}; }
@@ -136,7 +136,7 @@ Result<std::unique_ptr<CameraSensor>> CameraSensor::create(const RenderDescripti
                  fmt::format("camera '{}' at {} x {} pixels: {}", request.camera,
                              sensor->intrinsics_.width, sensor->intrinsics_.height, fault)};
   }
-  sensor->rate_ = request.rate.num > 0 ? request.rate : kUsualCameraRate;
+  sensor->rate_ = request.rate.num > 0 ? request.rate : kDefaultCameraRate;
   const double ev100 = request.render.ev100.value_or(static_cast<double>(description.ev100));
   GLOAM_TRY(sensor->models_,
             CameraModels::create(description, camera, sensor->intrinsics_, channels, ev100,
@@ -290,9 +290,10 @@ uint32_t CameraSensor::draws(const CameraView& view, int64_t frame_index) const 
 void CameraSensor::begin_samples(const CameraView& view) {
   const bool may = channels_.light() && settings_.tier != RenderTier::kFast &&
                    settings_.error <= 0 && sensing().events == std::nullopt;
-  constexpr int kMost = 1 << 20;  // samples, far from the end of an int
+  constexpr int kMaxAccumulatedSamples = 1 << 20;  // samples, far from the end of an int
   const bool goes_on = may && same_instant_ && pictures_ > 0 &&
-                       is_same(view.X_WC_open, accumulated_from_) && settings_.first_sample < kMost;
+                       is_same(view.X_WC_open, accumulated_from_) &&
+                       settings_.first_sample < kMaxAccumulatedSamples;
   settings_.first_sample = goes_on ? settings_.first_sample + settings_.spp : 0;
   pictures_ = goes_on ? pictures_ + 1 : 1;
   accumulated_from_ = view.X_WC_open;

@@ -12,7 +12,8 @@ namespace {
 
 constexpr float kGlass = 0.015f;        // [m] from the pupil to the outer side of the glass
 constexpr float kSmallPupil = 0.0005f;  // [m]
-constexpr float kLeast = 0.0005f, kMost = 0.002f;  // [m] radii; drops of more than 2 mm run off
+constexpr float kMinDropRadius = 0.0005f,
+                kMaxDropRadius = 0.002f;  // [m] radii; drops of more than 2 mm run off
 // Focal length of a drop over its radius: a cap with a contact angle of some 70 degrees on glass is
 // a thin lens of n = 1.33 whose surface has the radius 1.06 of its rim's, f = 1.06 r / (n - 1).
 constexpr float kFocal = 3.2f;
@@ -80,10 +81,12 @@ LensDrops::LensDrops(const Intrinsics& intrinsics, double share, bool falling, d
       falling_(falling),
       seed_(seed) {
   // Radii are even between the least and the most; drops overlap at random.
-  const double mean2 = (kLeast * kLeast + kLeast * kMost + kMost * kMost) / 3.0;
+  const double mean2 = (kMinDropRadius * kMinDropRadius + kMinDropRadius * kMaxDropRadius +
+                        kMaxDropRadius * kMaxDropRadius) /
+                       3.0;
   const double scale = static_cast<double>(focal_) / static_cast<double>(kGlass);
   const double area = M_PI * mean2 * scale * scale;
-  const double reach = static_cast<double>(kMost) * scale;
+  const double reach = static_cast<double>(kMaxDropRadius) * scale;
   const double field = (width_ + 2 * reach) * (height_ + 2 * reach);
   slots_ = static_cast<int>(std::lround(-std::log1p(-std::min(share, 0.98)) * field / area));
   if (share > 0) slots_ = std::clamp(slots_, 1, 4096);
@@ -102,11 +105,11 @@ LensDrops::Drop LensDrops::drop_at(int slot, double time) const {
     age = (turns - std::floor(turns)) * life;
   }
   const Philox4 draw = random.draw(count + 1, row);
-  const float reach = kMost * focal_ / kGlass;
+  const float reach = kMaxDropRadius * focal_ / kGlass;
   Drop drop;
   drop.center = {uniform_float(draw.v[0]) * (static_cast<float>(width_) + 2 * reach) - reach,
                  uniform_float(draw.v[1]) * (static_cast<float>(height_) + 2 * reach) - reach};
-  drop.radius = kLeast + (kMost - kLeast) * uniform_float(draw.v[2]);
+  drop.radius = kMinDropRadius + (kMaxDropRadius - kMinDropRadius) * uniform_float(draw.v[2]);
   drop.there =
       static_cast<float>(std::clamp(std::min(age / kSpread, (life - age) / kWiped), 0.0, 1.0));
   return drop;

@@ -32,12 +32,12 @@ double pixel_error(const Film& film) {
 }
 
 int samples_needed(const Film& film, int spp) {
-  constexpr int kMost = 65536;
+  constexpr int kMaxSamples = 65536;
   const double error = pixel_error(film);
-  if (!(error > kMendable)) return spp;
-  const double wanted = spp * (error / kMendable) * (error / kMendable);
+  if (!(error > kMaxDenoisableError)) return spp;
+  const double wanted = spp * (error / kMaxDenoisableError) * (error / kMaxDenoisableError);
   int needed = 1;
-  while (needed < kMost && needed < wanted) needed *= 2;
+  while (needed < kMaxSamples && needed < wanted) needed *= 2;
   return needed;
 }
 

@@ -35,7 +35,7 @@ constexpr std::array<StereoDepthModel, kStereoPresets.size()> kModelsOfPresets =
      .half_signal = 0.003},
 }};
 
-constexpr double kJump = 1;            // [px] of disparity between neighbours: two surfaces
+constexpr double kDisparityStep = 1;   // [px] of disparity between neighbours: two surfaces
 constexpr double kBeamsMeet = 0.1;     // [m] before it, with eyes 5 cm apart
 constexpr float kSmoothMetal = 0.35f;  // roughness from which on metal scatters enough
 
@@ -71,7 +71,8 @@ std::vector<uint8_t> near_jumps(const std::vector<float>& disparity, int width, 
   const size_t n = disparity.size(), w = static_cast<size_t>(width);
   std::vector<uint8_t> marked(n, 0), spread(n, 0);
   const auto jump = [&](size_t a, size_t b) {
-    if (std::abs(double{disparity[a]} - double{disparity[b]}) > kJump) marked[a] = marked[b] = 1;
+    if (std::abs(double{disparity[a]} - double{disparity[b]}) > kDisparityStep)
+      marked[a] = marked[b] = 1;
   };
   for (int y = 0; y < height; ++y) {
     for (int x = 0; x < width; ++x) {

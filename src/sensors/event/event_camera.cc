@@ -14,10 +14,10 @@ EventCamera::EventCamera(const EventOptions& options, int width, int height, uin
 
 double EventCamera::threshold(size_t i, bool brighter) const {
   if (options_.mismatch <= 0) return options_.threshold;
-  constexpr double kLeast = 0.01;
+  constexpr double kMinThreshold = 0.01;
   const RandomStream stream{seed_, stream_id("events.mismatch")};
   const auto [up, down] = normal_pair(stream.draw(0, static_cast<uint32_t>(i)));
-  return std::max(kLeast, options_.threshold + options_.mismatch * (brighter ? up : down));
+  return std::max(kMinThreshold, options_.threshold + options_.mismatch * (brighter ? up : down));
 }
 
 void EventCamera::pixel_events(size_t i, double before, double now, double time,

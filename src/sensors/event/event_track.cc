@@ -9,10 +9,10 @@ std::vector<Event> EventTrack::see(Frame frame, double time, const std::vector<V
   // 64 MiB of events, of pictures without any as many as viewers fall behind while they draw one.
   // Streams that lose nothing are a full queue and the windows being made apart, at most.
   constexpr size_t kMostEvents = size_t{1} << 22, kMostFrames = 4096, kLeastFrames = 16;
-  constexpr auto kPatience = std::chrono::seconds(10);
+  constexpr auto kWaitTimeout = std::chrono::seconds(10);
   std::unique_lock lock(mutex_);
   const auto may_go_on = [&] { return leads || leads_ == 0; };
-  changed_.wait_for(lock, kPatience, [&] { return may_go_on() || frame <= last_; });
+  changed_.wait_for(lock, kWaitTimeout, [&] { return may_go_on() || frame <= last_; });
   if (const auto found = remembered_.find(frame); found != remembered_.end()) return found->second;
   if (frame <= last_ || !may_go_on()) return {};
   if (frame.run != last_.run) camera_.restart();

@@ -11,7 +11,7 @@ namespace {
 
 // Limit on particles in one cell of a beam: more are a medium, whose sum varies by less than a
 // sixth.
-constexpr float kMany = 32;
+constexpr float kMaxParticlesPerCell = 32;
 constexpr size_t kMostCells = 4096;
 
 /// Power that goes straight back from a drop over that of a sphere that scatters evenly: the front
@@ -41,7 +41,7 @@ LidarCell make_cell(const LidarOptics& optics, const std::vector<LidarParticle>&
   size_t first = classes.size();
   while (first > 0 && most_signal(optics, k, classes[first - 1].backscatter) >= least) --first;
   for (size_t i = first; i < classes.size(); ++i) cell.mean += classes[i].number * volume;
-  if (cell.mean > kMany) {
+  if (cell.mean > kMaxParticlesPerCell) {
     cell.mean = 0;
     first = classes.size();
   }

@@ -10,7 +10,7 @@ constexpr float kFloatDegree = kPi / 180;
 constexpr float kWidthOverFwhm = 1.6986f;
 // Way of light in half the time that a pulse rises, 2 ns: with it the precision of the OS1's sheet
 // (10, 3 and 1.5 cm at a signal over noise of 12, 100 and 250) is met within 4 mm.
-constexpr float kRise = 0.3f;
+constexpr float kPulseRiseLength = 0.3f;
 
 std::vector<float> even_rings(int count, float lowest, float highest) {
   std::vector<float> elevations;
@@ -40,7 +40,7 @@ LidarOptics optics(float min_range, float max_range, double at_10_percent, Vec2f
   o.divergence = divergence_degrees * kFloatDegree;
   o.resolution = resolution;
   o.range_sigma = range_sigma;
-  o.rise = kRise;
+  o.rise = kPulseRiseLength;
   return o;
 }
 

@@ -13,7 +13,7 @@
 namespace gloam {
 namespace {
 
-constexpr double kUnseen = std::numeric_limits<double>::quiet_NaN();
+constexpr double kNoReading = std::numeric_limits<double>::quiet_NaN();
 
 int camera_row(const RenderDescription& description, const std::string& name) {
   const auto found = std::ranges::find(description.cameras, name, &CameraDescription::name);
@@ -28,7 +28,7 @@ const LightDescription* find_sun(const RenderDescription& description) {
 
 /// A point of a camera's picture [px].
 struct PicturePoint {
-  double u = kUnseen, v = kUnseen;
+  double u = kNoReading, v = kNoReading;
   bool is_inside = false;
 };
 
@@ -75,7 +75,7 @@ std::vector<Vec3f> disc_directions(Vec3f middle, float sine) {
 /// Fills u, v, fraction of the disc in the picture, fraction of its light that the picture shows.
 void read_sun_disc(const ProbeRenderer& shared, int camera, const PoseFrame& poses,
                    std::span<double> numbers) {
-  numbers[0] = numbers[1] = kUnseen;
+  numbers[0] = numbers[1] = kNoReading;
   numbers[2] = numbers[3] = 0;
   const RenderDescription& description = *shared.description;
   const LightDescription* sun = find_sun(description);

@@ -59,7 +59,7 @@ double VisibilityProbe::visibility(const SnapshotData& snapshot, Vec3f p_W) cons
     extinction +=
         double(density) * double(volume.mass_extinction[static_cast<int>(MediumBand::kGreen)]);
   }
-  return extinction > 0 ? std::min(kKoschmieder / extinction, kClear) : kClear;
+  return extinction > 0 ? std::min(kKoschmieder / extinction, kMaxVisibility) : kMaxVisibility;
 }
 
 }  // namespace gloam

@@ -12,7 +12,7 @@ namespace gloam {
 class VisibilityProbe {
  public:
   /// No further than that [m]: clean air's own, about.
-  static constexpr double kClear = 1e5;
+  static constexpr double kMaxVisibility = 1e5;
 
   /// Errors: those of the scene's media.
   static Result<VisibilityProbe> make(const CompiledWorld& world);

@@ -14,8 +14,8 @@
 namespace gloam {
 namespace {
 
-constexpr double kRoom = 293.15;    // [K]
-constexpr double kReference = 300;  // reference of NETD [K]
+constexpr double kRoomTemperature = 293.15;  // [K]
+constexpr double kReference = 300;           // reference of NETD [K]
 constexpr int kBand = static_cast<int>(MediumBand::k8to14um);
 
 bool fits(const TemperatureOptions& o, const LabelRow& label) {
@@ -30,7 +30,7 @@ double sent_by(const TemperatureOptions& o) {
 /// Part of `radiance` [W/(m² sr)] that passes the media, and the radiance that they add.
 double through_media(const MediaView& media, Vec3f origin, Vec3f direction, double distance,
                      double radiance) {
-  static const double room = thermal_radiance(kRoom);
+  static const double room = thermal_radiance(kRoomTemperature);
   double passed = 1, sent = 0;
   each_step(media, origin, direction, distance, [&](Vec3f p, double from, double to) {
     double extinction = 0, source = 0;  // [1/m], [W/(m² sr m)]
@@ -64,7 +64,8 @@ Result<ThermalCamera> ThermalCamera::make(const ThermalOptions& options,
   std::vector<const LabelRow*> labels = {&sky};
   for (const InstanceDescription& instance : description.instances)
     labels.push_back(&instance.label);
-  camera.radiance_.assign(labels.size(), sent_by({.temperature = kRoom, .ambient = kRoom}));
+  camera.radiance_.assign(labels.size(),
+                          sent_by({.temperature = kRoomTemperature, .ambient = kRoomTemperature}));
   for (const TemperatureOptions& o : temperatures) {
     bool found = false;
     for (size_t part = 0; part < labels.size(); ++part) {

@@ -155,7 +155,7 @@ size_t AgentSpline::row_after(double way) const {
 }
 
 void AgentSpline::plan_speeds(const VehicleSize& size) {
-  constexpr double kCreep = 0.3;  // [m/s]
+  constexpr double kFinalSpeed = 0.3;  // [m/s]
   const size_t n = points.size();
   if (n < 2) return;
   speeds.assign(n, std::numeric_limits<double>::infinity());
@@ -167,7 +167,7 @@ void AgentSpline::plan_speeds(const VehicleSize& size) {
     const double way = 0.5 * (flat_norm(before) + flat_norm(after));
     if (way > 0) speeds[i] = bend_speed(std::min(std::abs(turn) / way, tightest));
   }
-  speeds[n - 1] = loop ? speeds[0] : kCreep;
+  speeds[n - 1] = loop ? speeds[0] : kFinalSpeed;
   // Twice, so that a loop's first bends slow down its end.
   for (int round = 0; round < (loop ? 2 : 1); ++round) {
     for (size_t i = n - 1; i-- > 0;) {

@@ -17,8 +17,9 @@ namespace {
 constexpr Rational kMotionRate = {50, 1};  // rate of gait and bodies [Hz]
 constexpr int kPlaceTries = 200;
 constexpr double kMostShift = 3;  // longest shift of an agent that begins in something [m]
-constexpr double kApart = 0.9;    // distance at which agents of a crowd begin from each other [m]
-constexpr double kFromRobot = 1.5;
+constexpr double kMinAgentDistance =
+    0.9;  // distance at which agents of a crowd begin from each other [m]
+constexpr double kMinRobotDistance = 1.5;
 
 }  // namespace
 
@@ -144,14 +145,16 @@ bool Agents::draw_place(size_t row, NavPoint* at) const {
     for (size_t i = 0; i < row; ++i)
       if (norm(agents_[i].motion.p - p) < apart) return false;
     for (const NavObstacle& o : nav_->obstacles())
-      if (o.is_robot && norm(flat(o.p - p)) < kFromRobot + o.radius) return false;
+      if (o.is_robot && norm(flat(o.p - p)) < kMinRobotDistance + o.radius) return false;
     return true;
   };
   for (uint64_t i = 0; i < kPlaceTries; ++i) {
     *at = nav_->random_place(row, {}, stream.uniform(i, 0), stream.uniform(i, 1),
                              stream.uniform(i, 2));
     // The later half of the tries accepts half the distance, for crowded places.
-    if (at->ref != 0 && is_free(at->p, i < kPlaceTries / 2 ? kApart : kApart / 2)) return true;
+    if (at->ref != 0 &&
+        is_free(at->p, i < kPlaceTries / 2 ? kMinAgentDistance : kMinAgentDistance / 2))
+      return true;
   }
   return false;
 }

@@ -6,10 +6,10 @@
 namespace gloam {
 namespace {
 
-constexpr double kDeepest = 0.8;      // indentation where bones begin, over a capsule's radius
-constexpr double kBones = 10;         // stiffness there, over the region's
-constexpr double kReturned = 0.4;     // force on the way out over that on the way in
-constexpr double kReturnSpeed = 0.1;  // of parting, from which that counts in full [m/s]
+constexpr double kMaxIndentation = 0.8;  // indentation where bones begin, over a capsule's radius
+constexpr double kBoneStiffnessFactor = 10;  // stiffness there, over the region's
+constexpr double kUnloadingFraction = 0.4;   // force on the way out over that on the way in
+constexpr double kUnloadingSpeed = 0.1;      // of parting, from which that counts in full [m/s]
 
 double stiffness_of(int part, bool is_head) {
   if (part == kThighL || part == kThighR) return kThighStiffness;
@@ -54,7 +54,7 @@ BodyContacts::BodyContacts(const CompiledWorld& world, const mjModel& m)
       for (int g = m.body_geomadr[body]; g < m.body_geomadr[body] + m.body_geomnum[body]; ++g) {
         if (m.geom_contype[g] == 0 && m.geom_conaffinity[g] == 0) continue;
         springs_[static_cast<size_t>(g)] = {stiffness_of(part, is_head),
-                                            kDeepest * m.geom_size[3 * g]};
+                                            kMaxIndentation * m.geom_size[3 * g]};
         is_head = true;
       }
     }
@@ -93,10 +93,13 @@ void BodyContacts::soften(const mjModel& m, const mjContact& contact, const Body
   const double dt = m.opt.timestep, into = std::max(-contact.dist, 0.0);
   const double* velocity = data->efc_vel + rows.first;  // positive: parting [m/s]
   const double parting = rows.is_pyramid ? 0.5 * (velocity[0] + velocity[1]) : velocity[0];
-  const double returned = 1 - (1 - kReturned) * std::clamp(parting / kReturnSpeed, 0.0, 1.0);
+  const double returned =
+      1 - (1 - kUnloadingFraction) * std::clamp(parting / kUnloadingSpeed, 0.0, 1.0);
   const double in_bones = std::max(into - spring.depth, 0.0);
-  const double force = returned * spring.stiffness * (into + kBones * in_bones);         // [N]
-  const double slope = returned * spring.stiffness * (in_bones > 0 ? 1 + kBones : 1.0);  // [N/m]
+  const double force =
+      returned * spring.stiffness * (into + kBoneStiffnessFactor * in_bones);  // [N]
+  const double slope =
+      returned * spring.stiffness * (in_bones > 0 ? 1 + kBoneStiffnessFactor : 1.0);  // [N/m]
   // Force at the end of a part of the step: none of it where an explicit force keeps the motion;
   // all of it for what is so light that an explicit force would make it jump.
   const double inverse_mass = std::max(data->efc_diagA[rows.first], 1e-9);

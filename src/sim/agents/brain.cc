@@ -9,11 +9,11 @@
 namespace gloam {
 namespace {
 
-constexpr double kThere = 0.3;                 // from the end of a way [m]
-constexpr double kLeastWander = 4;             // [m]
-constexpr double kStuck = 6, kProgress = 0.4;  // [s], [m]
-constexpr double kTouch = 1;                   // time that a touch is remembered for [s]
-constexpr int kTries = 12;
+constexpr double kArrivalDistance = 0.3;              // from the end of a way [m]
+constexpr double kLeastWander = 4;                    // [m]
+constexpr double kStuckTime = 6, kMinProgress = 0.4;  // [s], [m]
+constexpr double kTouchMemory = 1;                    // time that a touch is remembered for [s]
+constexpr int kMaxWanderTries = 12;
 
 bool has_arrived(const AgentBody& agent) {
   if (agent.motion.has_goal == 0) return false;
@@ -22,7 +22,7 @@ bool has_arrived(const AgentBody& agent) {
   // behind.
   const double radius =
       agent.description->kind == AgentKind::kPerson ? 0 : agent.description->vehicle.turning_radius;
-  return norm(to) < kThere ||
+  return norm(to) < kArrivalDistance ||
          (norm(to) < radius && dot(to, heading_vector(agent.motion.heading)) < 0);
 }
 
@@ -115,7 +115,7 @@ class Brain final : public TreeHost {
     return nearest;
   }
   double distance_to(Vec3d p) const override { return flat_norm(p - motion_.p); }
-  bool was_touched() const override { return around_.time - motion_.touched < kTouch; }
+  bool was_touched() const override { return around_.time - motion_.touched < kTouchMemory; }
 
  private:
   void go(Vec3d goal, double speed) {
@@ -153,12 +153,12 @@ class Brain final : public TreeHost {
 
   // A place that a way leads to, not right here.
   bool draw_goal() {
-    for (int i = 0; i < kTries; ++i) {
+    for (int i = 0; i < kMaxWanderTries; ++i) {
       ++motion_.draws;
       const NavPoint to = around_.nav.random_place(row_, agent_.path.at(), draw("agent.goal", 0),
                                                    draw("agent.goal", 1), draw("agent.goal", 2));
       if (to.ref == 0) continue;
-      if (flat_norm(to.p - motion_.p) < kLeastWander && i + 2 < kTries) continue;
+      if (flat_norm(to.p - motion_.p) < kLeastWander && i + 2 < kMaxWanderTries) continue;
       motion_.goal = to.p;
       motion_.has_goal = 0;
       return true;
@@ -166,7 +166,7 @@ class Brain final : public TreeHost {
     return false;
   }
 
-  bool is_stuck() const { return around_.time - motion_.progress > kStuck; }
+  bool is_stuck() const { return around_.time - motion_.progress > kStuckTime; }
 
   void wander_on() {
     if (around_.time < motion_.pause_end) return;
@@ -220,7 +220,7 @@ class Brain final : public TreeHost {
   }
 
   void note_progress() {
-    if (flat_norm(motion_.p - motion_.seen_at) < kProgress &&
+    if (flat_norm(motion_.p - motion_.seen_at) < kMinProgress &&
         agent_.intent.mode != AgentIntent::Mode::kStand)
       return;
     motion_.seen_at = motion_.p;

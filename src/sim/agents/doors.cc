@@ -5,14 +5,14 @@
 namespace gloam {
 namespace {
 
-constexpr double kNear = 1.8, kAtDoor = 1.15, kInDoor = 0.7;  // [m]
-constexpr double kWide = 0.75;     // fraction of the way that a leaf has to be open
-constexpr double kPush = 30;       // a hand's, at a metre (ISO 21542: doors open at 25 N) [N m]
-constexpr double kStiffness = 40;  // [N m/rad]
-constexpr double kDamping = 14;    // [N m s/rad]
+constexpr double kApproachDistance = 1.8, kPushDistance = 1.15, kDoorwayDistance = 0.7;  // [m]
+constexpr double kMinOpenFraction = 0.75;  // fraction of the way that a leaf has to be open
+constexpr double kMaxPushTorque = 30;  // a hand's, at a metre (ISO 21542: doors open at 25 N) [N m]
+constexpr double kStiffness = 40;      // [N m/rad]
+constexpr double kDamping = 14;        // [N m s/rad]
 // Back: the moment of a door closer of size 2 (EN 1154), 27 degrees a second, after two seconds.
-constexpr double kCloser = 13, kClosing = 90, kHush = 28, kWait = 2;
-constexpr double kShut = 0.03;  // [rad]
+constexpr double kMaxCloserTorque = 13, kCloserStiffness = 90, kCloserDamping = 28, kCloseDelay = 2;
+constexpr double kShutAngle = 0.03;  // [rad]
 
 }  // namespace
 
@@ -64,17 +64,17 @@ void AgentDoors::decide(const mjData& data, const std::vector<AgentBody>& agents
           agent.intent.mode != AgentIntent::Mode::kStand &&
           dot(flat(to), agent.motion.wanted) > 0.2 * away * norm(agent.motion.wanted);
       const bool waits = is_blocked(data, agent.motion);
-      is_wanted |= away < kInDoor || (away < kNear && (comes || waits));
-      is_near |= away < kNear;
+      is_wanted |= away < kDoorwayDistance || (away < kApproachDistance && (comes || waits));
+      is_near |= away < kApproachDistance;
     }
     for (const NavObstacle& o : obstacles)
-      is_near |= o.is_robot && flat_norm(door.middle - o.p) < kNear + o.radius;
+      is_near |= o.is_robot && flat_norm(door.middle - o.p) < kApproachDistance + o.radius;
     state.is_wanted = is_wanted;
     state.was_opened |= is_wanted;
     state.idle = is_near ? 0 : state.idle + dt;
-    const bool is_shut = std::abs(data.qpos[door.qpos] - door.rest) < kShut;
-    if (is_shut && !is_wanted && state.idle > kWait) state.was_opened = 0;
-    state.is_closing = state.was_opened != 0 && !is_wanted && state.idle > kWait;
+    const bool is_shut = std::abs(data.qpos[door.qpos] - door.rest) < kShutAngle;
+    if (is_shut && !is_wanted && state.idle > kCloseDelay) state.was_opened = 0;
+    state.is_closing = state.was_opened != 0 && !is_wanted && state.idle > kCloseDelay;
     state.is_driven |= state.was_opened;
   }
 }
@@ -83,8 +83,8 @@ bool AgentDoors::is_blocked(const mjData& data, const AgentMotion& motion) const
   for (const Door& door : doors_) {
     const Vec3d to = flat(door.middle - motion.p);
     const double away = norm(to);
-    if (away > kAtDoor || away < 0.35 || std::abs(door.middle.z - motion.p.z) > 1.5) continue;
-    if (data.qpos[door.qpos] / door.open >= kWide) continue;
+    if (away > kPushDistance || away < 0.35 || std::abs(door.middle.z - motion.p.z) > 1.5) continue;
+    if (data.qpos[door.qpos] / door.open >= kMinOpenFraction) continue;
     if (dot(to, heading_vector(motion.heading)) > 0.5 * away) return true;
   }
   return false;
@@ -96,9 +96,11 @@ void AgentDoors::drive(mjData* data) const {
     const double q = data->qpos[door.qpos], speed = data->qvel[door.dof];
     double torque = 0;
     if (door.state.is_wanted != 0)
-      torque = std::clamp(kStiffness * (door.open - q) - kDamping * speed, -kPush, kPush);
+      torque = std::clamp(kStiffness * (door.open - q) - kDamping * speed, -kMaxPushTorque,
+                          kMaxPushTorque);
     else if (door.state.is_closing != 0)
-      torque = std::clamp(kClosing * (door.rest - q), -kCloser, kCloser) - kHush * speed;
+      torque = std::clamp(kCloserStiffness * (door.rest - q), -kMaxCloserTorque, kMaxCloserTorque) -
+               kCloserDamping * speed;
     data->qfrc_applied[door.dof] = torque;
   }
 }

@@ -8,11 +8,12 @@
 namespace gloam::gait {
 
 /// Fraction of the cycle that a foot stands, at 1.3 m/s.
-inline constexpr double kStance = 0.615;
+inline constexpr double kStanceFraction = 0.615;
 /// Fraction of the way in stance by which a foot comes down ahead of the hips.
-inline constexpr double kAhead = 0.341;
+inline constexpr double kTouchdownFraction = 0.341;
 
-/// Pitch of a foot [rad], heel up positive. `phase`: 0 = it comes down, kStance = it lifts, 1.
+/// Pitch of a foot [rad], heel up positive. `phase`: 0 = it comes down, kStanceFraction = it
+/// lifts, 1.
 double foot_pitch(double phase);
 /// Least descent of the hips from straight legs, by knees that are never quite straight [m].
 inline constexpr double kKneeDescent = 0.0048;

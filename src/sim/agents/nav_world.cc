@@ -15,15 +15,15 @@ namespace {
 
 constexpr size_t kChunk = 512;  // triangles of a ground that are looked at as one
 // Margin around agents and their goals, where a plane has no end [m]
-constexpr double kAround = 12;
-constexpr float kSquare = 1;        // edge of a square in the map of surfaces [m]
-constexpr double kLeastLeaf = 0.7;  // half the height of a door's leaf [m]
-constexpr double kMoves = 0.05;     // faster is moving [m/s]
-constexpr double kLeft = 0.15;      // further from where it lay is away [m]
-constexpr double kRest = 0.5;       // until a thing is at rest [s]
-constexpr double kRobotRest = 3;    // a robot pauses [s]
-constexpr float kSmall = 0.12f;     // edge below which a thing is in nobody's way [m]
-constexpr double kLeastPart = 4;    // least area of a mesh that somebody is put on [m²]
+constexpr double kPlaneMargin = 12;
+constexpr float kSquare = 1;                 // edge of a square in the map of surfaces [m]
+constexpr double kLeastLeaf = 0.7;           // half the height of a door's leaf [m]
+constexpr double kMovingSpeed = 0.05;        // faster is moving [m/s]
+constexpr double kDisplacedDistance = 0.15;  // further from where it lay is away [m]
+constexpr double kRestTime = 0.5;            // until a thing is at rest [s]
+constexpr double kRobotRestTime = 3;         // a robot pauses [s]
+constexpr float kMinObstacleEdge = 0.12f;    // edge below which a thing is in nobody's way [m]
+constexpr double kLeastPart = 4;             // least area of a mesh that somebody is put on [m²]
 constexpr float kInf = std::numeric_limits<float>::infinity();
 
 bool can_collide(const mjModel& m, int geom) {
@@ -124,7 +124,7 @@ void NavWorld::find_bounds(const CompiledWorld& world, const mjModel& m, const m
     }
   }
   const auto around = [&](const Vec3& p) {
-    const auto reach = static_cast<float>(kAround);
+    const auto reach = static_cast<float>(kPlaneMargin);
     const Vec3f at{static_cast<float>(p.x), static_cast<float>(p.y), 0};
     const NavBounds heights = bounds_;
     extend(&bounds_, {at.x - reach, at.y - reach, heights.low.z},
@@ -293,7 +293,7 @@ void NavWorld::put_into_mesh(const mjModel& m, const mjData& d, Movable* movable
   NavBounds box;
   bound(m, d, *movable, &box);
   const Vec3f size = box.high - box.low;
-  if (max_component(size) < kSmall) return;
+  if (max_component(size) < kMinObstacleEdge) return;
   for (const int g : movable->geoms) {
     movable->surfaces.push_back(
         collider_surface(m, g, d.geom_xpos + 3 * g, d.geom_xmat + 9 * g, bounds_));
@@ -351,9 +351,10 @@ bool NavWorld::follow(const mjModel& m, const mjData& d, double dt) {
     NavObstacle& obstacle = obstacles_[i];
     const Vec3d p = position_of(d, movable.body);
     const Vec3d velocity = dt > 0 ? (p - movable.p) * (1 / dt) : Vec3d{};
-    if (movable.is_in_mesh && norm(p - movable.p_in_mesh) > kLeft) take_out_of_mesh(&movable);
-    movable.rest_time = norm(velocity) > kMoves ? 0 : movable.rest_time + dt;
-    if (!movable.is_in_mesh && movable.rest_time > (movable.is_robot ? kRobotRest : kRest))
+    if (movable.is_in_mesh && norm(p - movable.p_in_mesh) > kDisplacedDistance)
+      take_out_of_mesh(&movable);
+    movable.rest_time = norm(velocity) > kMovingSpeed ? 0 : movable.rest_time + dt;
+    if (!movable.is_in_mesh && movable.rest_time > (movable.is_robot ? kRobotRestTime : kRestTime))
       put_into_mesh(m, d, &movable);
     const bool is_known = movable.is_in_mesh && !movable.is_robot && obstacle.radius > 0;
     movable.p = p;
@@ -366,7 +367,7 @@ bool NavWorld::follow(const mjModel& m, const mjData& d, double dt) {
     obstacle.p = {double{middle.x}, double{middle.y}, double{box.low.z}};
     obstacle.radius = 0.5 * double{max(size.x, size.y)};
     obstacle.is_robot = movable.is_robot;
-    if (max_component(size) < kSmall) obstacle.is_in_mesh = true;  // in nobody's way
+    if (max_component(size) < kMinObstacleEdge) obstacle.is_in_mesh = true;  // in nobody's way
   }
   return rebuild_marked();
 }

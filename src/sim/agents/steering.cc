@@ -9,11 +9,11 @@
 namespace gloam {
 namespace {
 
-constexpr double kLook = 6;         // [m]
-constexpr double kPersonal = 0.05;  // beyond radii [m]
-constexpr double kHorizon = 0.7;    // within which a collision makes it stop [s]
-constexpr double kGap = 0.6;        // gap that a vehicle leaves in front [m]
-constexpr double kBeside = 0.15;    // and to its sides [m]
+constexpr double kNeighbourRange = 6;    // [m]
+constexpr double kPersonalSpace = 0.05;  // beyond radii [m]
+constexpr double kHorizon = 0.7;         // within which a collision makes it stop [s]
+constexpr double kFrontGap = 0.6;        // gap that a vehicle leaves in front [m]
+constexpr double kSideGap = 0.15;        // and to its sides [m]
 
 struct Nearby {
   Vec3d p, velocity, wanted;
@@ -100,7 +100,7 @@ void Agents::avoid(size_t row, Vec3d* wanted) {
   const auto add = [&](Nearby other) {
     const Vec3d to = flat(other.p - m.p);
     other.away = norm(to) - other.radius;
-    if (other.away > kLook || std::abs(other.p.z - m.p.z) > 1.5) return;
+    if (other.away > kNeighbourRange || std::abs(other.p.z - m.p.z) > 1.5) return;
     if (dot(to, *wanted) < 0) other.away += 2;
     const bool is_full = count == NavAvoidance::kMostCircles;
     if (is_full && near[count - 1].away <= other.away) return;
@@ -111,11 +111,12 @@ void Agents::avoid(size_t row, Vec3d* wanted) {
   for (size_t i = 0; i < agents_.size(); ++i) {
     if (i == row) continue;
     const AgentMotion& o = agents_[i].motion;
-    for_circles(agents_[i],
-                [&](Vec3d p, double size) { add({p, o.velocity, o.wanted, size + kPersonal, 0}); });
+    for_circles(agents_[i], [&](Vec3d p, double size) {
+      add({p, o.velocity, o.wanted, size + kPersonalSpace, 0});
+    });
   }
   for (const NavObstacle& o : nav_->obstacles())
-    if (!o.is_in_mesh) add({o.p, flat(o.velocity), flat(o.velocity), o.radius + kPersonal, 0});
+    if (!o.is_in_mesh) add({o.p, flat(o.velocity), flat(o.velocity), o.radius + kPersonalSpace, 0});
   if (count == 0) return;
   avoidance_.clear();
   for (int i = 0; i < count; ++i)
@@ -131,7 +132,7 @@ bool Agents::has_room(size_t row, Vec3d wanted) const {
   const Vec3d p = agent.motion.p;
   const auto collides = [&](Vec3d q, Vec3d velocity, double radius) {
     const Vec3d to = flat(q - p);
-    if (std::abs(q.z - p.z) > 1.5 || norm(to) > kLook) return false;
+    if (std::abs(q.z - p.z) > 1.5 || norm(to) > kNeighbourRange) return false;
     const Vec3d relative = wanted - velocity;
     if (dot(to, wanted) <= 0 || dot(to, relative) <= 0) return false;
     const double size = radius + agent.description->radius - 0.08;
@@ -158,7 +159,7 @@ double Agents::free_speed(size_t row) const {
   const AgentMotion& m = agent.motion;
   const VehicleSize& size = agent.description->vehicle;
   const Vec3d ahead = heading_vector(m.heading), left{-ahead.y, ahead.x, 0};
-  const double lane = static_cast<double>(size.width) / 2 + kBeside;
+  const double lane = static_cast<double>(size.width) / 2 + kSideGap;
   double free = std::numeric_limits<double>::infinity();
   const auto look = [&](Vec3d q, Vec3d velocity, double radius) {
     for (const double later : {0.0, 0.5, 1.0}) {
@@ -174,7 +175,7 @@ double Agents::free_speed(size_t row) const {
                   [&](Vec3d q, double radius) { look(q, agents_[i].motion.velocity, radius); });
   for (const NavObstacle& o : nav_->obstacles())
     if (!o.is_in_mesh || o.is_robot) look(o.p, flat(o.velocity), o.radius);
-  return std::sqrt(2 * planned_slowing(size) * std::max(free - kGap, 0.0));
+  return std::sqrt(2 * planned_slowing(size) * std::max(free - kFrontGap, 0.0));
 }
 
 }  // namespace gloam

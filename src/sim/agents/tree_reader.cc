@@ -37,17 +37,17 @@ struct NodeRule {
 
 const std::vector<NodeRule>& node_rules() {
   using K = TreeNodeKind;
-  constexpr int kMany = 1 << 20;
+  constexpr int kUnlimited = 1 << 20;
   static const std::vector<NodeRule> rules = {
-      {"Sequence", K::kSequence, 1, kMany, {}},
-      {"SequenceWithMemory", K::kSequenceWithMemory, 1, kMany, {}},
-      {"ReactiveSequence", K::kReactiveSequence, 1, kMany, {}},
-      {"Fallback", K::kFallback, 1, kMany, {}},
-      {"ReactiveFallback", K::kReactiveFallback, 1, kMany, {}},
+      {"Sequence", K::kSequence, 1, kUnlimited, {}},
+      {"SequenceWithMemory", K::kSequenceWithMemory, 1, kUnlimited, {}},
+      {"ReactiveSequence", K::kReactiveSequence, 1, kUnlimited, {}},
+      {"Fallback", K::kFallback, 1, kUnlimited, {}},
+      {"ReactiveFallback", K::kReactiveFallback, 1, kUnlimited, {}},
       {"Parallel",
        K::kParallel,
        1,
-       kMany,
+       kUnlimited,
        {{"success_count", Port::kCount, false}, {"failure_count", Port::kFailures, false}}},
       {"Inverter", K::kInverter, 1, 1, {}},
       {"Repeat", K::kRepeat, 1, 1, {{"num_cycles", Port::kCount, true}}},

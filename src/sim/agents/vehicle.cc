@@ -4,10 +4,10 @@ namespace gloam {
 namespace {
 
 // Passengers find 2 m/s² to the side comfortable (Bosetti et al. 2014).
-constexpr double kLateral = 1.8;    // [m/s²]
-constexpr double kSteerRate = 0.8;  // rate of the wheels' steering [rad/s]
-constexpr double kLookTime = 0.8;   // ahead of which a driver looks [s]
-constexpr double kSpin = 1.2;       // rate of vehicles that turn on the spot [rad/s]
+constexpr double kMaxLateralAcceleration = 1.8;  // [m/s²]
+constexpr double kSteerRate = 0.8;               // rate of the wheels' steering [rad/s]
+constexpr double kLookaheadTime = 0.8;           // ahead of which a driver looks [s]
+constexpr double kSpinRate = 1.2;                // rate of vehicles that turn on the spot [rad/s]
 
 double unsteered_x(const VehicleSize& s) {
   return static_cast<double>(s.steers_rear ? s.front_axle.x : s.rear_axle.x);
@@ -27,7 +27,7 @@ Vec3d wheel_place(const VehicleSize& s, size_t i) {
 }  // namespace
 
 double bend_speed(double curvature) {
-  return std::sqrt(kLateral / std::max(std::abs(curvature), 1e-3));
+  return std::sqrt(kMaxLateralAcceleration / std::max(std::abs(curvature), 1e-3));
 }
 
 void drive(const VehicleSize& size, double dt, Vec3d wanted, Vec3d* velocity, double* heading,
@@ -39,7 +39,7 @@ void drive(const VehicleSize& size, double dt, Vec3d wanted, Vec3d* velocity, do
     error = wrapped(std::atan2(wanted.y, wanted.x) - *heading);
     target = most * std::max(std::cos(error), 0.25);
     // The circle to a point that far ahead in the wanted direction (Coulter 1992, pure pursuit).
-    const double look = std::max(kLookTime * speed, wheelbase(size));
+    const double look = std::max(kLookaheadTime * speed, wheelbase(size));
     const double sine = std::abs(error) < M_PI / 2 ? std::sin(error) : std::copysign(1, error);
     const double tightest = spins ? 1e9 : 1 / size.turning_radius;
     curvature = std::clamp(2 * sine / look, -tightest, tightest);
@@ -50,7 +50,7 @@ void drive(const VehicleSize& size, double dt, Vec3d wanted, Vec3d* velocity, do
   const double change = target > speed ? size.thrust : size.brakes;
   const double now = speed + std::clamp(target - speed, -change * dt, change * dt);
   if (spins) {
-    const double rate = most > 0.02 ? std::clamp(2.5 * error, -kSpin, kSpin) : 0;
+    const double rate = most > 0.02 ? std::clamp(2.5 * error, -kSpinRate, kSpinRate) : 0;
     *yaw_rate += std::clamp(rate - *yaw_rate, -4 * dt, 4 * dt);
   } else {
     const double base = wheelbase(size), steer = std::atan(base * state->curvature);

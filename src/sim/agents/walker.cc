@@ -8,15 +8,16 @@ namespace gloam {
 namespace {
 
 constexpr double kDegree = M_PI / 180;
-constexpr double kUsualSpeed = 1.3;      // speed that amplitudes are given for [m/s]
+constexpr double kReferenceSpeed = 1.3;  // speed that amplitudes are given for [m/s]
 constexpr double kWalkRatio = 0.0063;    // step length / cadence of people of 1.7 m [m min]
 constexpr double kSlowestCadence = 1.2;  // [1/s]
-constexpr double kStands = 0.06, kStarts = 0.09;  // [m/s]
-constexpr double kReach = 0.9995;  // fraction of a leg's length: a knee is never quite straight
-constexpr double kStandingKnee = 0.002;  // descent of the hips while standing, of their height
-constexpr double kBobTime = 0.03;        // in which the hips follow [s]
-constexpr double kUsualHeight = 1.7;     // height of a person that curves are given for [m]
-constexpr double kUsualHips = 0.901;     // height of the hips of that person [m]
+constexpr double kStandSpeed = 0.06, kStartSpeed = 0.09;  // [m/s]
+constexpr double kMaxLegExtension =
+    0.9995;  // fraction of a leg's length: a knee is never quite straight
+constexpr double kStandingKnee = 0.002;   // descent of the hips while standing, of their height
+constexpr double kHipFilterTime = 0.03;   // in which the hips follow [s]
+constexpr double kReferenceHeight = 1.7;  // height of a person that curves are given for [m]
+constexpr double kReferenceHipHeight = 0.901;  // height of the hips of that person [m]
 
 double follow(double value, double target, double dt, double time) {
   return value + (target - value) * (1 - std::exp(-dt / time));
@@ -29,7 +30,7 @@ Walker::Walker(const PersonShape& shape, uint64_t seed)
       idle_phase_(2 * M_PI * RandomStream{seed, stream_id("agent.idle")}.uniform(0, 0)) {}
 
 double Walker::cadence(double speed) const {
-  const double ratio = kWalkRatio * shape_.height / kUsualHeight;
+  const double ratio = kWalkRatio * shape_.height / kReferenceHeight;
   return std::max(std::sqrt(60 * speed / ratio) / 60, kSlowestCadence);
 }
 
@@ -42,13 +43,14 @@ double Walker::phase_of(int foot) const {
 
 // The phase at which a foot does at 1.3 m/s what it does at `phase` now.
 double Walker::in_usual_cycle(double phase) const {
-  if (phase < state_.stance) return phase / state_.stance * gait::kStance;
-  return gait::kStance + (phase - state_.stance) / (1 - state_.stance) * (1 - gait::kStance);
+  if (phase < state_.stance) return phase / state_.stance * gait::kStanceFraction;
+  return gait::kStanceFraction +
+         (phase - state_.stance) / (1 - state_.stance) * (1 - gait::kStanceFraction);
 }
 
 // Length of a step over that of gait_curves.h, for someone of this size.
 double Walker::usual_steps() const {
-  const double size = shape_.hip_height / kUsualHips;
+  const double size = shape_.hip_height / kReferenceHipHeight;
   return state_.speed / cadence(state_.speed) / (gait::kStep * size);
 }
 
@@ -105,7 +107,7 @@ void Walker::aim(const WalkInput& in, int foot, double rate, const GroundHeight&
   const Vec3d ahead{c * v.x - s * v.y, s * v.x + c * v.y, 0};
   WalkInput then = in;
   then.heading = in.heading + turn + 0.5 * std::clamp(in.yaw_rate * stand, -0.6, 0.6);
-  then.p = in.p + ahead * (left + (speed > kStands ? gait::kAhead * stand : 0));
+  then.p = in.p + ahead * (left + (speed > kStandSpeed ? gait::kTouchdownFraction * stand : 0));
   f.to = neutral(then, foot);
   f.to.z = ground.at(f.to);
   f.to_yaw = f.from_yaw + wrapped(then.heading - f.from_yaw);
@@ -143,10 +145,10 @@ void Walker::step(double dt, const WalkInput& in, const GroundHeight& ground) {
   state_.speed = follow(state_.speed, speed, dt, 0.15);
   const double errors = std::max(error_of(in, 0), error_of(in, 1));
   if (state_.is_stepping == 0) {
-    if (speed > kStarts || errors > 0.16) begin_step(in);
+    if (speed > kStartSpeed || errors > 0.16) begin_step(in);
   } else {
     const bool both_stand = is_planted(0) && is_planted(1);
-    if (both_stand && speed < kStands && errors < 0.09) state_.is_stepping = 0;
+    if (both_stand && speed < kStandSpeed && errors < 0.09) state_.is_stepping = 0;
   }
   if (state_.is_stepping != 0) advance(dt, in, ground);
   state_.activity = follow(state_.activity, state_.is_stepping != 0 ? 1 : 0, dt, 0.18);
@@ -155,15 +157,15 @@ void Walker::step(double dt, const WalkInput& in, const GroundHeight& ground) {
   for (int i = 0; i < 2; ++i)
     if (is_planted(i)) low += state_.feet[i].p.z, ++count;
   state_.ground = follow(state_.ground, count > 0 ? low / count : in.p.z, dt, 0.12);
-  const double size = shape_.hip_height / kUsualHips, step = usual_steps();
-  const double lead = kBobTime * cadence(state_.speed) / 2;
+  const double size = shape_.hip_height / kReferenceHipHeight, step = usual_steps();
+  const double lead = kHipFilterTime * cadence(state_.speed) / 2;
   const double walks = gait::kKneeDescent + step * step * gait::hip_descent(state_.phase + lead);
   const double down =
       kStandingKnee * shape_.hip_height * (1 - state_.activity) + walks * size * state_.activity;
-  state_.bob = follow(state_.bob, down, dt, kBobTime);
+  state_.bob = follow(state_.bob, down, dt, kHipFilterTime);
   const Vec3d ahead = heading_vector(in.heading), left{-ahead.y, ahead.x, 0};
   const Vec3d tilt = in.acceleration * 0.045 + in.push * 0.25;
-  const double forward = (1.5 + 2.5 * state_.speed / kUsualSpeed) * kDegree;
+  const double forward = (1.5 + 2.5 * state_.speed / kReferenceSpeed) * kDegree;
   state_.lean[0] =
       follow(state_.lean[0], std::clamp(forward + dot(tilt, ahead), -0.25, 0.35), dt, 0.15);
   state_.lean[1] = follow(state_.lean[1], std::clamp(dot(tilt, left), -0.25, 0.25), dt, 0.15);
@@ -191,7 +193,7 @@ PartPose Walker::foot_pose(int foot) const {
 }
 
 void Walker::pose_trunk(const WalkInput& in, PersonPose* pose) const {
-  const double a = state_.activity, much = a * std::min(state_.speed / kUsualSpeed, 1.3);
+  const double a = state_.activity, much = a * std::min(state_.speed / kReferenceSpeed, 1.3);
   const double cycle = 2 * M_PI * state_.phase, mid = cycle - M_PI * state_.stance;
   const double idle = (1 - a) * std::sin(2 * M_PI * 0.21 * in.time + idle_phase_);
   const Quat heading = turn_z(in.heading);
@@ -205,7 +207,7 @@ void Walker::pose_trunk(const WalkInput& in, PersonPose* pose) const {
   pelvis.p = {in.p.x, in.p.y, state_.ground + shape_.hip_height - state_.bob};
   pelvis.p += left * sway;
   // No lower than asked for, but so low that the legs that stand reach the ground.
-  const double most = kReach * (shape_.thigh + shape_.shank);
+  const double most = kMaxLegExtension * (shape_.thigh + shape_.shank);
   for (int i = 0; i < 2; ++i) {
     if (!is_planted(i)) continue;
     const Vec3d hip = pelvis.p + rotated(pelvis.q, {0, (i == 0 ? 1 : -1) * shape_.hip, 0});
@@ -250,7 +252,8 @@ void Walker::pose_legs(PersonPose* pose) const {
     foot = foot_pose(i);
     const Vec3d hip = pelvis.p + rotated(pelvis.q, {0, (i == 0 ? 1 : -1) * shape_.hip, 0});
     const Vec3d down = unit_or(foot.p - hip, {0, 0, -1});
-    const double reach = norm(foot.p - hip), d = std::clamp(reach, 0.4 * (a + b), kReach * (a + b));
+    const double reach = norm(foot.p - hip),
+                 d = std::clamp(reach, 0.4 * (a + b), kMaxLegExtension * (a + b));
     if (!is_planted(i)) foot.p = hip + down * d;  // one that swings comes along
     const Vec3d toes = heading_vector(state_.feet[i].yaw), front = rotated(pelvis.q, {1, 0, 0});
     Vec3d forward = unit_or(toes + front, front);

@@ -30,8 +30,9 @@ TEST(PictureScale, IsFullWhereTheRendererKeepsUp) {
 TEST(PictureScale, FallsAtOnceToWhatTheRendererCanDo) {
   PictureScale scale;
   scale.add(0.35, false);
-  EXPECT_LE(0.35 * scale.scale() * scale.scale(), PictureScale::kTarget);
-  EXPECT_GT(2 * 0.35 * scale.scale() * scale.scale(), PictureScale::kTarget) << "coarser than need";
+  EXPECT_LE(0.35 * scale.scale() * scale.scale(), PictureScale::kTargetInterval);
+  EXPECT_GT(2 * 0.35 * scale.scale() * scale.scale(), PictureScale::kTargetInterval)
+      << "coarser than need";
   scale.add(100, false);
   EXPECT_EQ(scale.scale(), 0.25) << "there is a coarsest picture";
 }

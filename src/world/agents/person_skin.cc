@@ -15,7 +15,7 @@ namespace gloam {
 namespace {
 
 constexpr float kLegsApart = 0.16f, kArmsApart = 0.6f;  // in the pose that is modelled [rad]
-constexpr float kSoft = 0.022f;  // over which a vertex goes from one bone to the next [m]
+constexpr float kBlendWidth = 0.022f;  // over which a vertex goes from one bone to the next [m]
 
 using Color = std::array<float, 3>;  // sRGB
 constexpr Color kSkins[] = {{0.91f, 0.75f, 0.66f},
@@ -325,7 +325,7 @@ class SkinWriter {
         nearest = min(nearest, share[i]);
       }
       for (float& w : share) {
-        w = std::exp(-(w - nearest) / kSoft);
+        w = std::exp(-(w - nearest) / kBlendWidth);
         if (w < 0.03f) w = 0;
         sum += w;
       }

@@ -75,7 +75,7 @@ void describe_place(const Place& place, CompiledWorld* world) {
 
 // Notes requested sizes that exceed the limits of their kind of prop.
 void note_sizes(const Scene& scene, const Place& place, std::vector<Error>* notes) {
-  constexpr double kNear = 0.05, kShare = 0.1;  // [m], of the edge
+  constexpr double kAbsoluteTolerance = 0.05, kRelativeTolerance = 0.1;  // [m], of the edge
   for (const PropOptions& prop : scene.props) {
     if (!prop.size) continue;
     for (const Placement& placement : place.placements()) {
@@ -87,7 +87,7 @@ void note_sizes(const Scene& scene, const Place& place, std::vector<Error>* note
       std::string told;
       for (size_t i = 0; i < 3; ++i) {
         const auto [asked, is] = std::pair(edges[i][0], edges[i][1]);
-        if (std::abs(asked - is) <= kNear + kShare * asked) continue;
+        if (std::abs(asked - is) <= kAbsoluteTolerance + kRelativeTolerance * asked) continue;
         constexpr const char* kEdges[] = {"deep", "wide", "high"};
         told += fmt::format("{}{:.2f} m {}, not {:.4g} m", told.empty() ? "" : ", ", is, kEdges[i],
                             asked);

@@ -18,7 +18,8 @@ double expected_share(double passed, double expected) {
   return 1 - (1 - kAsExpected) * std::exp((kAsExpected - x) / (1 - kAsExpected));
 }
 
-constexpr double kTelling = 0.02;  // fraction after which the remaining time is estimated
+constexpr double kMinFractionForEstimate =
+    0.02;  // fraction after which the remaining time is estimated
 
 double passed_since(std::chrono::steady_clock::time_point start) {
   return Seconds(std::chrono::steady_clock::now() - start).count();
@@ -64,7 +65,7 @@ Progress CompileProgress::state(bool is_all) const {
   Progress out{what_, 0, passed_since(start_), -1};
   const double passed = passed_since(begun_);
   double share = share_;
-  if (share > kTelling) out.left = passed * (1 - share) / share;
+  if (share > kMinFractionForEstimate) out.left = passed * (1 - share) / share;
   if (expected_ > 0) {
     const double by_clock = expected_share(passed, expected_);
     if (by_clock > share) {

@@ -13,7 +13,7 @@
 namespace gloam {
 namespace {
 
-constexpr double kDeep = 0.01, kBelow = 0.05;  // [m]
+constexpr double kMaxPenetration = 0.01, kMaxDepthBelowFloor = 0.05;  // [m]
 
 class Overlaps {
  public:
@@ -70,7 +70,7 @@ class Overlaps {
   }
 
   void add(const mjContact& contact) {
-    if (!(contact.dist < -kDeep) || contact.geom[0] < 0 || contact.geom[1] < 0) return;
+    if (!(contact.dist < -kMaxPenetration) || contact.geom[0] < 0 || contact.geom[1] < 0) return;
     int geoms[2] = {contact.geom[0], contact.geom[1]};
     for (const int geom : geoms)  // agents are put where there is room (sim/agents)
       if (is_agent(m_.geom_bodyid[geom])) return;
@@ -118,7 +118,7 @@ class Overlaps {
     for (const RobotInstance& robot : world_.robots) {
       if (robot.root_body <= 0) continue;
       const double z = d.xpos[3 * robot.root_body + 2];
-      if (z < lowest - kBelow)
+      if (z < lowest - kMaxDepthBelowFloor)
         out_.push_back({ErrorKind::kInput,
                         fmt::format("robot '{}' starts {:.2g} m below the lowest floor", robot.name,
                                     lowest - z),

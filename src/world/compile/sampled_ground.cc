@@ -15,7 +15,7 @@ namespace gloam {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr double kDoubtfulSize = 1000;  // [m] more of a file in metres is worth a question
+constexpr double kSuspiciousSize = 1000;  // [m] more of a file in metres is worth a question
 
 VisualOptions visual_of(const HeightFieldOptions& o) {
   VisualOptions visual;
@@ -91,7 +91,7 @@ Result<std::vector<HeightField>> sample(const HeightFieldOptions& o, const Model
   };
   const std::vector<PlacedMesh> meshes = place_meshes(o, model);
   GLOAM_TRY(const SampledRegion region, region_of(o, meshes));
-  const bool is_doubtful = o.unit == 1 && region.extent() > kDoubtfulSize;
+  const bool is_doubtful = o.unit == 1 && region.extent() > kSuspiciousSize;
   const std::string unit_hint = "if the file is in millimetres, set unit = 0.001";
   if (is_doubtful) note(fmt::format("the mesh is {:.0f} m wide", region.extent()), unit_hint);
   Result<HeightGrid> grid = make_height_grid(region.low, region.high, o.resolution, o.layers);

@@ -32,12 +32,12 @@ static_assert(std::size(kFuelTable) == kFuels.size());
 constexpr float kGrowthTable[] = {0, 2.93f, 11.72f, 46.9f, 187.6f};
 static_assert(std::size(kGrowthTable) == kFireGrowths.size());
 
-constexpr double kUsualVoxel = 0.1;  // [m]
+constexpr double kDefaultVoxel = 0.1;  // [m]
 // Voxels of a box without a given size of voxels: 30 ms a step
-constexpr double kUsualVoxels = 250e3;
-constexpr double kMostVoxels = 1 << 27;  // 16 GB
-constexpr Vec3 kUsualSize = {8, 8, 4};   // [m]
-constexpr double kWall = 0.3;            // beyond the rooms of a generated place [m]
+constexpr double kDefaultVoxelCount = 250e3;
+constexpr double kMostVoxels = 1 << 27;      // 16 GB
+constexpr Vec3 kDefaultGasSize = {8, 8, 4};  // [m]
+constexpr double kWall = 0.3;                // beyond the rooms of a generated place [m]
 
 template <size_t N>
 size_t row_of(const std::array<std::string_view, N>& words, const std::string& word) {
@@ -62,11 +62,11 @@ Extent usual_extent(const CompiledWorld& world, const std::vector<GasSourceDescr
   if (!std::isfinite(at.low.x)) at.add({0, 0, 0.5});
   const Vec3 c = at.middle();
   Extent extent;
-  extent.add({std::min(at.low.x, c.x - kUsualSize.x / 2),
-              std::min(at.low.y, c.y - kUsualSize.y / 2), at.low.z - 0.5});
-  extent.add({std::max(at.high.x, c.x + kUsualSize.x / 2),
-              std::max(at.high.y, c.y + kUsualSize.y / 2),
-              std::max(at.high.z, at.low.z - 0.5 + kUsualSize.z)});
+  extent.add({std::min(at.low.x, c.x - kDefaultGasSize.x / 2),
+              std::min(at.low.y, c.y - kDefaultGasSize.y / 2), at.low.z - 0.5});
+  extent.add({std::max(at.high.x, c.x + kDefaultGasSize.x / 2),
+              std::max(at.high.y, c.y + kDefaultGasSize.y / 2),
+              std::max(at.high.z, at.low.z - 0.5 + kDefaultGasSize.z)});
   return extent;
 }
 
@@ -78,8 +78,8 @@ Error gas_error(const GasOptions& options, std::string message, std::string hint
 Status set_grid(const GasOptions& options, const Extent& extent, GasDescription* gas) {
   const Vec3 edges{extent.high.x - extent.low.x, extent.high.y - extent.low.y,
                    extent.high.z - extent.low.z};
-  const double least = std::cbrt(edges.x * edges.y * edges.z / kUsualVoxels);
-  const double voxel = options.voxel.value_or(std::max(kUsualVoxel, least));
+  const double least = std::cbrt(edges.x * edges.y * edges.z / kDefaultVoxelCount);
+  const double voxel = options.voxel.value_or(std::max(kDefaultVoxel, least));
   const auto along = [&](double edge) { return std::max(std::ceil(edge / voxel - 1e-6), 4.0); };
   const double nx = along(edges.x), ny = along(edges.y), nz = along(edges.z);
   if (!(nx * ny * nz <= kMostVoxels) || std::max({nx, ny, nz}) > 1024) {

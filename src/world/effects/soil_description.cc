@@ -14,9 +14,9 @@
 namespace gloam {
 namespace {
 
-constexpr double kUsualCell = 0.02;   // [m]
-constexpr double kUsualDepth = 0.15;  // [m]
-constexpr double kUsualCells = 6e4;   // at most, unless a cell is asked for
+constexpr double kDefaultCell = 0.02;     // [m]
+constexpr double kDefaultDepth = 0.15;    // [m]
+constexpr double kDefaultMaxCells = 6e4;  // at most, unless a cell is asked for
 constexpr double kMostSoilCells = 5e5;
 constexpr double kGroundCell = 0.1;   // between looks for the ground [m]
 constexpr double kThinEdge = 0.3;     // over which a bed over ground thins out [m]
@@ -63,9 +63,9 @@ SoilStrength strength_of(const SoilOptions& o) {
 }
 
 bool overlap(const SoilDescription& a, const SoilDescription& b) {
-  constexpr double kTouch = 1e-6;  // tolerance of edges that meet [m]
-  return std::abs(a.x - b.x) < (a.size_x + b.size_x) / 2 - kTouch &&
-         std::abs(a.y - b.y) < (a.size_y + b.size_y) / 2 - kTouch &&
+  constexpr double kEdgeTolerance = 1e-6;  // tolerance of edges that meet [m]
+  return std::abs(a.x - b.x) < (a.size_x + b.size_x) / 2 - kEdgeTolerance &&
+         std::abs(a.y - b.y) < (a.size_y + b.size_y) / 2 - kEdgeTolerance &&
          std::abs(a.level - b.level) < std::max(a.depth, b.depth);
 }
 
@@ -116,9 +116,9 @@ Result<SoilDescription> describe_soil(const SoilOptions& o,
   soil.name = o.name;
   soil.kind = o.kind;
   soil.x = o.position.x, soil.y = o.position.y, soil.level = o.position.z;
-  soil.size_x = o.size[0], soil.size_y = o.size[1], soil.depth = o.depth.value_or(kUsualDepth);
+  soil.size_x = o.size[0], soil.size_y = o.size[1], soil.depth = o.depth.value_or(kDefaultDepth);
   soil.loc = o.loc;
-  const double usual = std::max(kUsualCell, std::sqrt(o.size[0] * o.size[1] / kUsualCells));
+  const double usual = std::max(kDefaultCell, std::sqrt(o.size[0] * o.size[1] / kDefaultMaxCells));
   const double cell = o.cell.value_or(usual);
   const auto along = [cell](double edge) { return std::max(std::lround(edge / cell), 2L); };
   const long nx = along(o.size[0]), ny = along(o.size[1]);

@@ -129,8 +129,8 @@ Status check_waves(const WaterOptions& o) {
 
 bool overlap(const WaterOptions& a, const WaterOptions& b) {
   const auto apart = [](double p, double half_p, double q, double half_q) {
-    constexpr double kTouch = 1e-6;  // tolerance of edges that meet [m]
-    return std::abs(p - q) >= half_p + half_q - kTouch;
+    constexpr double kEdgeTolerance = 1e-6;  // tolerance of edges that meet [m]
+    return std::abs(p - q) >= half_p + half_q - kEdgeTolerance;
   };
   return !apart(a.position.x, a.size[0] / 2, b.position.x, b.size[0] / 2) &&
          !apart(a.position.y, a.size[1] / 2, b.position.y, b.size[1] / 2) &&

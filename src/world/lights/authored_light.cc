@@ -178,10 +178,10 @@ Status LightAuthor::add_lamp(const LightOptions& options, const LampPlace& place
   } else {
     light.radius = static_cast<float>(options.radius.value_or(0));
     if (options.type == "spot") {
-      constexpr double kUsualAngle = 45;  // [deg]
+      constexpr double kDefaultConeAngle = 45;  // [deg]
       light.type = LightType::kSpot;
       light.cos_cutoff =
-          static_cast<float>(std::cos(options.angle.value_or(kUsualAngle) * kDegree));
+          static_cast<float>(std::cos(options.angle.value_or(kDefaultConeAngle) * kDegree));
       light.softness = static_cast<float>(options.softness.value_or(0));
     }
     GLOAM_TRY(light.profile, profile_row(options));
@@ -255,9 +255,9 @@ Status LightAuthor::add(const LightOptions& options) {
   place.is_static = is_static_[body] && !options.motion;
   const Vec3f p_W = transform_point(poses_[body], pose_of(options).p);
   // A lamp that is carried about shines ahead, not at the middle of who carries it.
-  constexpr float kCarried = 2;  // [m]
+  constexpr float kCarriedAimDistance = 2;  // [m]
   place.distance = light_distance(p_W, *out_);
-  if (!is_static_[body]) place.distance = max(place.distance, kCarried);
+  if (!is_static_[body]) place.distance = max(place.distance, kCarriedAimDistance);
   const bool is_lamp =
       options.type == "point" || options.type == "spot" || options.type == "directional";
   GLOAM_TRY_STATUS(is_lamp ? add_lamp(options, place) : add_area(options, place));

@@ -13,13 +13,13 @@
 namespace gloam {
 namespace {
 
-constexpr double kSlack = 1e-3;  // tolerance for rounded angles [degrees]
+constexpr double kAngleTolerance = 1e-3;  // tolerance for rounded angles [degrees]
 
-bool near(double a, double b) { return std::abs(a - b) < kSlack; }
+bool near(double a, double b) { return std::abs(a - b) < kAngleTolerance; }
 
 /// Finds x among rising `angles`: index of the one below and the weight of the next; false outside.
 bool find(const std::vector<double>& angles, double x, size_t* low, double* share) {
-  if (x < angles.front() - kSlack || x > angles.back() + kSlack) return false;
+  if (x < angles.front() - kAngleTolerance || x > angles.back() + kAngleTolerance) return false;
   *low = 0;
   *share = 0;
   if (angles.size() == 1) return true;
@@ -48,7 +48,7 @@ double measured(const IesMeasurement& m, double vertical, double horizontal) {
 /// omit are mirror images.
 Status complete_c(IesMeasurement* m, const std::string& name) {
   const SourceLoc vertical{name, m->vertical_line, 0}, horizontal{name, m->horizontal_line, 0};
-  if (m->vertical.front() < -kSlack || m->vertical.back() > 180 + kSlack) {
+  if (m->vertical.front() < -kAngleTolerance || m->vertical.back() > 180 + kAngleTolerance) {
     return Error{ErrorKind::kInput,
                  fmt::format("vertical angles of type C from {} to {}; 0 to 180 are allowed",
                              m->vertical.front(), m->vertical.back()),
@@ -57,7 +57,7 @@ Status complete_c(IesMeasurement* m, const std::string& name) {
   std::vector<double>& angles = m->horizontal;
   if (angles.size() == 1) return {};
   const double first = angles.front(), last = angles.back();
-  const bool whole = near(first, 0) && last > 180 + kSlack && last < 360 + kSlack;
+  const bool whole = near(first, 0) && last > 180 + kAngleTolerance && last < 360 + kAngleTolerance;
   double mirror = 0;  // angles below it, or above it, are images in this plane
   if (near(first, 0) && near(last, 90)) {
     mirror = 90;
@@ -86,7 +86,7 @@ Status complete_c(IesMeasurement* m, const std::string& name) {
     reflect(180);
   } else if (mirror > 0) {
     reflect(mirror);  // from 90 to 270 on to 450
-  } else if (last < 360 - kSlack) {
+  } else if (last < 360 - kAngleTolerance) {
     append(360, 0);
   }
   return {};
@@ -113,7 +113,7 @@ Status check_flat(const IesMeasurement& m, const std::string& name) {
 double toward(const IesMeasurement& m, double theta, double phi) {
   if (m.type == Goniometer::kC) {
     if (m.horizontal.size() == 1) return measured(m, theta, m.horizontal[0]);
-    return measured(m, theta, phi < m.horizontal.front() - kSlack ? phi + 360 : phi);
+    return measured(m, theta, phi < m.horizontal.front() - kAngleTolerance ? phi + 360 : phi);
   }
   const double x = std::sin(theta * kDegree) * std::cos(phi * kDegree);
   const double y = std::sin(theta * kDegree) * std::sin(phi * kDegree);

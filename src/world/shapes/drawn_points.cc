@@ -176,7 +176,7 @@ std::vector<DrawnPart> subject_of(std::vector<DrawnPart> parts, const RenderDesc
     }
   }
   if (main == nullptr) return parts;
-  constexpr float kMuchLarger = 2, kFar = 1;  // in diagonals of the main tree
+  constexpr float kMaxRelativeSize = 2, kFar = 1;  // in diagonals of the main tree
   const float size = main->box.diagonal();
   const auto belongs = [&](const DrawnPart& part) {
     if (root(part) == main_root) return true;
@@ -184,7 +184,7 @@ std::vector<DrawnPart> subject_of(std::vector<DrawnPart> parts, const RenderDesc
     own.add(part.low, part.high);
     const PartBox& tree = root(part) == 0 ? own : trees[root(part)].box;
     if (root(part) == 0) return is_base(scene.instances[part.instance], own, main->box);
-    return tree.diagonal() <= kMuchLarger * size && tree.distance(main->box) <= kFar * size;
+    return tree.diagonal() <= kMaxRelativeSize * size && tree.distance(main->box) <= kFar * size;
   };
   std::vector<DrawnPart> out;
   for (DrawnPart& part : parts)

@@ -10,7 +10,7 @@ namespace gloam {
 namespace {
 
 // Factors on the standard deviation: along, across, up
-constexpr double kShares[3] = {1, 0.8, 0.5};
+constexpr double kComponentFactors[3] = {1, 0.8, 0.5};
 // Integral scales are 8.1, 2.7 and 0.66 of 0.7 times the height, here ten metres.
 constexpr double kScales[3] = {8.1 * 7, 2.7 * 7, 0.66 * 7};  // [m]
 constexpr double kSlowest = 1.0 / 600, kFastest = 5;         // [Hz]
@@ -34,7 +34,7 @@ Gusts::Gusts(const WindDescription& wind)
       const double share =
           (variance_below(low * ratio, turnover) - variance_below(low, turnover)) / all;
       Tone& tone = tones_[axis][i];
-      tone.amplitude = kShares[axis] * wind.gusts * std::sqrt(2 * share);
+      tone.amplitude = kComponentFactors[axis] * wind.gusts * std::sqrt(2 * share);
       const double frequency = low * std::pow(ratio, random.uniform(i, 2 * axis));
       tone.omega = 2 * std::numbers::pi * frequency;
       tone.phase = 2 * std::numbers::pi * random.uniform(i, 2 * axis + 1);

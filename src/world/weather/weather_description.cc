@@ -24,8 +24,8 @@ float WeatherDescription::wetness_at(double time) const {
 
 float WeatherDescription::snow_at(double time) const {
   // Three centimetres hide what is beneath but for one part in seven.
-  constexpr double kHides = 0.015;  // [m]
-  return static_cast<float>(1 - std::exp(-(snow_start + snow_rate * time) / kHides));
+  constexpr double kCoverDepth = 0.015;  // [m]
+  return static_cast<float>(1 - std::exp(-(snow_start + snow_rate * time) / kCoverDepth));
 }
 
 Status author_weather(const WeatherOptions& options, const WindDescription& wind,

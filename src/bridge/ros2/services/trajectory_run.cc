@@ -18,9 +18,9 @@ using JointResult = fjt::FollowJointTrajectory_Result;
 using GoalState = action_msgs::GoalStatus;
 
 constexpr double kGoalPeriod = 0.02;     // between goals of joints [s]
-constexpr double kPostedAhead = 0.1;     // goals that are under way [s]
+constexpr double kGoalLookahead = 0.1;   // goals that are under way [s]
 constexpr double kLongestSettling = 10;  // where the goal names no time for it [s]
-constexpr double kWatchRate = 50;        // looks at the joints, and feedback [Hz]
+constexpr double kFeedbackRate = 50;     // looks at the joints, and feedback [Hz]
 
 GoalEnd aborted(int32_t code, std::string text) {
   return trajectory_end(GoalState::STATUS_ABORTED, code, std::move(text));
@@ -123,7 +123,7 @@ Status TrajectoryRun::begin(const Snapshot& now) {
   GLOAM_TRY(lease_, simulation_.claim(robot));
   timestep_ = 1 / simulation_.step_rate().value();
   const Rational rate = simulation_.step_rate();
-  if (rate.value() > kWatchRate) rate_ = {static_cast<int64_t>(kWatchRate), 1};
+  if (rate.value() > kFeedbackRate) rate_ = {static_cast<int64_t>(kFeedbackRate), 1};
   return {};
 }
 
@@ -138,7 +138,7 @@ Status TrajectoryRun::find(const Snapshot& now) {
 }
 
 Status TrajectoryRun::post_ahead(const Snapshot& now) {
-  const double until = std::min(now.time() - start_ + kPostedAhead, way_.end());
+  const double until = std::min(now.time() - start_ + kGoalLookahead, way_.end());
   std::vector<Command> commands;
   while (posted_ < way_.end() && posted_ <= until) {
     posted_ = std::min(posted_ + kGoalPeriod, way_.end());
@@ -153,7 +153,7 @@ Status TrajectoryRun::post_ahead(const Snapshot& now) {
 
 GoalEnd TrajectoryRun::cancelled(const Snapshot& now) {
   std::vector<Command> commands;
-  const int64_t ahead = std::llround((kPostedAhead + kGoalPeriod) / timestep_);
+  const int64_t ahead = std::llround((kGoalLookahead + kGoalPeriod) / timestep_);
   for (const Joint joint : joints_)
     for (const int64_t step : {now.step(), now.step() + ahead})
       commands.push_back({step, SetJointGoal{joint, now[joint].position()}});

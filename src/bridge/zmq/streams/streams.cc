@@ -12,7 +12,7 @@ namespace {
 
 using std::chrono::milliseconds;
 
-constexpr milliseconds kRetry{1000};
+constexpr milliseconds kRetryPeriod{1000};
 constexpr size_t kMaxSubscriptions = 4096;
 constexpr size_t kMaxSubscriptionBytes = 512;
 constexpr size_t kMaxStateRates = 16;
@@ -68,7 +68,7 @@ Streams::Plan Streams::wait_for_work() {
   const auto is_due = [this] { return stopping_ || has_work_; };
   // Now and then also while something is open: for what it has lost, and topics that are gone.
   if (has_failed_ || !groups_.empty() || !states_.empty())
-    changed_.wait_for(lock, kRetry, is_due);
+    changed_.wait_for(lock, kRetryPeriod, is_due);
   else
     changed_.wait(lock, is_due);
   has_work_ = false;

@@ -33,12 +33,13 @@ Profile inset(const Profile& outline, float by) {
   return out;
 }
 
-constexpr size_t kBelow = 34;  // first points of a side view: arches and sill, from rear to front
+constexpr size_t kUndersidePoints =
+    34;  // first points of a side view: arches and sill, from rear to front
 
 // The flat end of a shell: a strip between what is below and what is above.
 Solid flank(const Path& ring, bool left) {
-  const Path low(ring.begin(), ring.begin() + kBelow);
-  const Path high(ring.rbegin(), ring.rend() - kBelow);
+  const Path low(ring.begin(), ring.begin() + kUndersidePoints);
+  const Path high(ring.rbegin(), ring.rend() - kUndersidePoints);
   const auto shares = [](const Path& chain) {
     std::vector<float> out{0};
     for (size_t i = 1; i < chain.size(); ++i)

@@ -14,9 +14,10 @@ namespace {
 constexpr int kProbes = 256;         // of a row, evenly; then as many where light was found
 constexpr int kReflections = 4;      // among rows
 constexpr float kConeSpread = 0.2f;  // of a probe: about a cell's width
-constexpr float kSought = 0.75f;     // fraction of the later probes that follow the earlier ones
-constexpr float kOwn = 0.7f;         // fraction of a row's own light; its neighbours' is the rest
-constexpr float kBeside = 0.1f;      // fraction that a cell gets of those beside it
+constexpr float kGuidedFraction =
+    0.75f;                          // fraction of the later probes that follow the earlier ones
+constexpr float kOwnWeight = 0.7f;  // fraction of a row's own light; its neighbours' is the rest
+constexpr float kNeighbourWeight = 0.1f;  // fraction that a cell gets of those beside it
 constexpr uint32_t kAcross = directions::kAcross, kCells = kAcross * kAcross;
 
 /// Surface or sky that a probe met.
@@ -185,7 +186,7 @@ class ArrivingLight {
     size_t used = 0;
     for (const uint32_t cell : cells) {
       const double sought = total > 0 ? static_cast<double>(spread[cell]) / total : even;
-      before += (kSought * sought + (1 - kSought) * even) * kProbes;
+      before += (kGuidedFraction * sought + (1 - kGuidedFraction) * even) * kProbes;
       while (used < kProbes && static_cast<double>(used) + 0.5 < before) which[used++] = cell;
     }
     while (used < kProbes) which[used++] = cells.back();
@@ -216,11 +217,12 @@ class ArrivingLight {
       for (int k = 1; k < count; ++k) around += squares[static_cast<size_t>(near[k])][cell];
       const float own = squares[static_cast<size_t>(row)][cell];
       const float mean =
-          count > 1 ? kOwn * own + (1 - kOwn) * around / static_cast<float>(count - 1) : own;
+          count > 1 ? kOwnWeight * own + (1 - kOwnWeight) * around / static_cast<float>(count - 1)
+                    : own;
       own_and_near[cell] = mean;
     }
     for (const uint32_t cell : cells_of(row)) {
-      light[cell] = sqrtf(own_and_near[cell] + kBeside * beside(own_and_near, cell));
+      light[cell] = sqrtf(own_and_near[cell] + kNeighbourWeight * beside(own_and_near, cell));
       total += static_cast<double>(light[cell]);
     }
     double before = 0;

@@ -58,10 +58,11 @@ class Probes {
     return scene_.materials[scene_.instances[hit.instance].material].transparent;
   }
 
-  /// The first on the ray's way that is not clear. After kMost that are, whatever comes is passed.
+  /// The first on the ray's way that is not clear. After kMaxPassedSurfaces that are, whatever
+  /// comes is passed.
   bool find_solid(Ray* ray, RayHit* hit) const {
-    constexpr int kMost = 8;
-    for (int i = 0; i < kMost; ++i) {
+    constexpr int kMaxPassedSurfaces = 8;
+    for (int i = 0; i < kMaxPassedSurfaces; ++i) {
       if (!tracer_.trace(*ray, false, hit)) return false;
       if (!is_clear(*hit)) return true;
       const float step = hit->t + surface_step(ray->o, hit->t);

@@ -10,9 +10,10 @@
 namespace gloam {
 namespace {
 
-constexpr int kLog2Most = 14;       // paths, at most
-constexpr int kBatch = 1024;        // paths between two looks at the error
-constexpr double kError = 0.005;    // standard error over the mean at which the measurement ends
+constexpr int kLog2Most = 14;  // paths, at most
+constexpr int kBatch = 1024;   // paths between two looks at the error
+constexpr double kTargetError =
+    0.005;                          // standard error over the mean at which the measurement ends
 constexpr float kBroadCone = 0.2f;  // of the paths' rays: no fine texture is sought
 
 /// Irradiance [lx per channel] of one light sample and one path from p, weighted against each other
@@ -75,7 +76,7 @@ float measure_illuminance(const SceneView& scene, const CpuTracer& tracer, Vec3f
     }
     done += kBatch;
     const double mean = sum / done, variance = std::max(squares / done - mean * mean, 0.0);
-    if (std::sqrt(variance / done) <= kError * mean) return static_cast<float>(mean);
+    if (std::sqrt(variance / done) <= kTargetError * mean) return static_cast<float>(mean);
   }
   return static_cast<float>(sum / (1 << kLog2Most));
 }

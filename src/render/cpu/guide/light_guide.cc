@@ -13,12 +13,13 @@
 namespace gloam {
 namespace {
 
-constexpr int kCellsAlong = 16;   // of the longest edge
-constexpr int kLightRays = 32;    // to each light from a cell, at most
-constexpr int kRaysOfRow = 512;   // to all of them
-constexpr float kFloor = 0.002f;  // gain of a light that no ray has seen
-constexpr float kWorth = 0.02f;   // fraction of the map below which nothing is sampled from it
-constexpr float kEven = 0.5f;     // unevenness up to which the BSDF finds light as well
+constexpr int kCellsAlong = 16;     // of the longest edge
+constexpr int kLightRays = 32;      // to each light from a cell, at most
+constexpr int kRaysOfRow = 512;     // to all of them
+constexpr float kMinGain = 0.002f;  // gain of a light that no ray has seen
+constexpr float kMinMapFraction =
+    0.02f;  // fraction of the map below which nothing is sampled from it
+constexpr float kMaxUnevenness = 0.5f;  // unevenness up to which the BSDF finds light as well
 constexpr float kGuidedProbability =
     0.75f;  // of directions by the guide, where surfaces are diffuse
 constexpr int kFacings = LightGuide::kFacings;
@@ -124,14 +125,14 @@ void LightGuideStore::conclude(int row) {
     const auto of = [&](int r) { return seen[static_cast<size_t>(r) * stride + first]; };
     float around = 0;
     for (int i = 1; i < count; ++i) around += of(rows[i]) / static_cast<float>(count - 1);
-    return max(count > 1 ? 0.5f * (of(row) + around) : of(row), kFloor);
+    return max(count > 1 ? 0.5f * (of(row) + around) : of(row), kMinGain);
   };
   for (uint32_t light = 0; light < grid_.lights; ++light) {
     gain_[static_cast<size_t>(row) * grid_.lights + light] = smooth(found_, grid_.lights, light);
   }
   if (sky_seen_.empty()) return;
   const float sky = smooth(sky_seen_, 1, 0);
-  sky_visible_[static_cast<size_t>(row)] = sky > kWorth ? sky : 0.0f;
+  sky_visible_[static_cast<size_t>(row)] = sky > kMinMapFraction ? sky : 0.0f;
 }
 
 void LightGuideStore::build(SceneView scene, const CpuTracer& statics, const DescribedLook& look) {
@@ -167,7 +168,8 @@ void LightGuideStore::build(SceneView scene, const CpuTracer& statics, const Des
   // directions costs more time than it saves noise.
   if (has_sky || has_sun) {
     arriving_ = find_arriving_light(scene, statics, view(), rows_);
-    grid_.probability = unevenness_of(arriving_, rows_) > kEven ? kGuidedProbability : 0.0f;
+    grid_.probability =
+        unevenness_of(arriving_, rows_) > kMaxUnevenness ? kGuidedProbability : 0.0f;
   }
   gain_.resize(rows_.size() * grid_.lights);
   found_.resize(gain_.size());

@@ -66,11 +66,11 @@ float mean_cover(const ParticleView& view, const ParticleSet& set, const StreakF
     farthest = max(farthest, far);
   }
   if (view.weather.shelter->nx == 0 || sum == 0) return sum;
-  constexpr int kLooks = 4;
+  constexpr int kShelterSamples = 4;
   float open = 0;
-  for (int i = 0; i < kLooks; ++i) {
-    const float t = farthest * (static_cast<float>(i) + 0.5f) / kLooks;
-    open += view.weather.shelter->view().open_above(eye + d * t, 0) / kLooks;
+  for (int i = 0; i < kShelterSamples; ++i) {
+    const float t = farthest * (static_cast<float>(i) + 0.5f) / kShelterSamples;
+    open += view.weather.shelter->view().open_above(eye + d * t, 0) / kShelterSamples;
   }
   return sum * open;
 }

@@ -115,15 +115,15 @@ void StreakFinder::find_drips(uint64_t seed, std::vector<Streak>* out) const {
 
 // Tip: end of the highest obstacle on the way from the edge's cell to the one beside it.
 bool StreakFinder::find_tip(const DripEdge& edge, float along, Vec3f* tip) const {
-  constexpr float kAbove = 0.5f, kSame = 0.1f, kBeside = 0.003f;  // [m]
+  constexpr float kDropHeight = 0.5f, kHeightTolerance = 0.1f, kEdgeOffset = 0.003f;  // [m]
   constexpr int kHalvings = 6;
   const Vec3f out{edge.out.x, edge.out.y, 0}, side{-edge.out.y, edge.out.x, 0};
   float in = 0, far = 1, top = 0;
   const auto is_roof = [&](float fraction) {
-    const Vec3f from =
-        edge.from + side * (along * edge.way) + out * (fraction * edge.way) + Vec3f{0, 0, kAbove};
+    const Vec3f from = edge.from + side * (along * edge.way) + out * (fraction * edge.way) +
+                       Vec3f{0, 0, kDropHeight};
     float way = 0;
-    if (!way_down(from, &way) || std::fabs(way - kAbove) > kSame) return false;
+    if (!way_down(from, &way) || std::fabs(way - kDropHeight) > kHeightTolerance) return false;
     top = from.z - way;
     return true;
   };
@@ -132,7 +132,7 @@ bool StreakFinder::find_tip(const DripEdge& edge, float along, Vec3f* tip) const
     const float middle = 0.5f * (in + far);
     (is_roof(middle) ? in : far) = middle;
   }
-  *tip = edge.from + side * (along * edge.way) + out * (far * edge.way + kBeside);
+  *tip = edge.from + side * (along * edge.way) + out * (far * edge.way + kEdgeOffset);
   tip->z = top;
   return true;
 }

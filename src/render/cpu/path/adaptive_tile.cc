@@ -46,7 +46,7 @@ class AdaptiveTile {
       const int next = sampled == 0 ? std::min(plan.least, most_) : std::min(2 * sampled, most_);
       Tile tile(job_, x0_, y0_, [this](int index) { return blocks_[block_of(index)].open; });
       for (int half = 0; half < 2; ++half) {
-        sample(&tile, half, half == 0 ? 0 : kOtherHalf, sampled, next);
+        sample(&tile, half, half == 0 ? 0 : kSecondHalfSeed, sampled, next);
       }
       stats->rays += tile.rays();
       stats->paths +=
@@ -60,7 +60,7 @@ class AdaptiveTile {
   static constexpr int kBatches = 4;
   static constexpr int kPilotSamples = 8;
   // Seeds that scramble the sampler, each in its own way; arbitrary.
-  static constexpr uint64_t kOtherHalf = 0xD1B54A32D192ED03u, kPilotSeed = 0x8CB92BA72F3D8DD7u;
+  static constexpr uint64_t kSecondHalfSeed = 0xD1B54A32D192ED03u, kPilotSeed = 0x8CB92BA72F3D8DD7u;
   static constexpr int kSide = 8;  // of a block [px]
   static constexpr int kAcross = kTile / kSide;
   static_assert(kTile % kSide == 0 && kLeastAdaptiveSpp >= 2 * kBatches);

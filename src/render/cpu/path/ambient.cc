@@ -19,7 +19,7 @@ std::vector<AmbientPath> trace_ambient(const SceneView& scene, const CpuTracer& 
 }
 
 AmbientCube mean_ambient(const std::vector<AmbientPath>& paths) {
-  constexpr float kUsualShare = 0.05f;  // of all paths, for the mean over all facings
+  constexpr float kPriorFraction = 0.05f;  // of all paths, for the mean over all facings
   Vec3f by_facing[LightGuide::kFacings], light;
   float count[LightGuide::kFacings] = {}, found = 0;
   for (const AmbientPath& path : paths) {
@@ -31,7 +31,7 @@ AmbientCube mean_ambient(const std::vector<AmbientPath>& paths) {
   }
   AmbientCube ambient;
   if (found == 0) return ambient;
-  const float usual = kUsualShare * static_cast<float>(paths.size());
+  const float usual = kPriorFraction * static_cast<float>(paths.size());
   for (int k = 0; k < LightGuide::kFacings; ++k) {
     ambient.light[k] = (by_facing[k] + light * (usual / found)) / (count[k] + usual);
   }

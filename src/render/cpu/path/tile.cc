@@ -13,9 +13,9 @@ namespace gloam {
 namespace {
 
 /// Samples of a pixel that run side by side in lanes, at most: their rays keep together.
-constexpr int kTogether = 4;
+constexpr int kMaxSamplesInLanes = 4;
 /// Lanes without a path from which on new ones are begun: fewer do not pay for it.
-constexpr int kIdle = kLaneCount / 8;
+constexpr int kRefillThreshold = kLaneCount / 8;
 
 }  // namespace
 
@@ -49,9 +49,10 @@ void Tile::sample(Wave<State>* wave, int index, const Start& start, const Advanc
 }
 
 void Tile::render_path(const SampleRange& range) {
-  std::vector<PathResult> results(static_cast<size_t>(count_ * std::min(kTogether, range.count)));
-  for (int done = 0; done < range.count && job_.may_continue(); done += kTogether) {
-    const int together = std::min(kTogether, range.count - done);
+  std::vector<PathResult> results(
+      static_cast<size_t>(count_ * std::min(kMaxSamplesInLanes, range.count)));
+  for (int done = 0; done < range.count && job_.may_continue(); done += kMaxSamplesInLanes) {
+    const int together = std::min(kMaxSamplesInLanes, range.count - done);
     trace_paths({range.seed, range.first + done, together}, results.data());
     for (int path = 0; path < count_ * together; ++path) {
       const PathResult& result = results[static_cast<size_t>(path)];
@@ -103,7 +104,7 @@ void Tile::trace_paths(const SampleRange& range, PathResult* results) {
   while (begun < count || any(active)) {
     const bool coherent = !any(active);
     const MaskLanes idle = !active;
-    if (begun < count && __builtin_popcount(bits_of(idle)) >= kIdle) {
+    if (begun < count && __builtin_popcount(bits_of(idle)) >= kRefillThreshold) {
       MaskLanes starting = false;
       each_lane(idle, [&](int i) {
         if (begun == count) return;

@@ -28,8 +28,9 @@ struct Wave {
       int left = 0;
       const int all = count;
       for (int i = 0; i < all; ++i) {
-        if (i + 2 * kAhead < all) fetch_instance(scene, alive[i + 2 * kAhead]);
-        if (i + kAhead < all) fetch_triangle(scene, alive[i + kAhead]);
+        if (i + 2 * kPrefetchDistance < all)
+          fetch_instance(scene, alive[i + 2 * kPrefetchDistance]);
+        if (i + kPrefetchDistance < all) fetch_triangle(scene, alive[i + kPrefetchDistance]);
         const int k = alive[i];
         if (advance(&states[k], found[k], hits[k])) alive[left++] = k;
       }
@@ -39,7 +40,7 @@ struct Wave {
 
  private:
   /// Paths between a request to the memory for what a hit needs and its use.
-  static constexpr int kAhead = 4;
+  static constexpr int kPrefetchDistance = 4;
 
   bool needs_surface(int k) const { return found[k] && !states[k].any; }
   void fetch_instance(const SceneView& scene, int k) const {

@@ -24,10 +24,10 @@ void ExcessRegions::Region::fade(float most) {
 
 void ExcessRegions::spread(std::span<const OfCell> cells, bool remembers, std::span<Vec3f> light) {
   // Light from before counts less as long as light comes round for the first time.
-  const float past = remembers ? realtime::kMostTold : realtime::kToldAtFirst;
+  const float past = remembers ? realtime::kMaxExcessMemory : realtime::kFirstExcessMemory;
   all_.fade(past);
   for (const OfCell& cell : cells) all_.add(cell);
-  all_.ratio = all_.sum / max(all_.light, realtime::kDark);
+  all_.ratio = all_.sum / max(all_.light, realtime::kMinLuminance);
   // Levels from wide to narrow: a region that has seen few cells is completed by the wider region.
   for (size_t level = 0; level < kLevels; ++level) {
     const auto key_of = [&](size_t k) { return cells[k].key; };
@@ -38,9 +38,9 @@ void ExcessRegions::spread(std::span<const OfCell> cells, bool remembers, std::s
       region.fade(past);
       for (const auto& [_, k] : group) region.add(cells[k]);
       region.last_traced = update_;
-      const float guessed = region.light / region.cells * realtime::kGuessedCells;
-      region.ratio =
-          (region.sum + wider.ratio * guessed) / max(region.light + guessed, realtime::kDark);
+      const float guessed = region.light / region.cells * realtime::kRegionPriorCells;
+      region.ratio = (region.sum + wider.ratio * guessed) /
+                     max(region.light + guessed, realtime::kMinLuminance);
       if (level + 1 < kLevels) return;
       // Excess in proportion to each cell's light: dark corners of a region see little of bright
       // surfaces, too.
@@ -50,9 +50,9 @@ void ExcessRegions::spread(std::span<const OfCell> cells, bool remembers, std::s
 }
 
 void ExcessRegions::forget(uint64_t key) {
-  all_.fade(realtime::kToldAtChange);
+  all_.fade(realtime::kChangedExcessMemory);
   for (size_t level = 0; level < kLevels; ++level) {
-    regions_[level][key & kRegionMasks[level]].fade(realtime::kToldAtChange);
+    regions_[level][key & kRegionMasks[level]].fade(realtime::kChangedExcessMemory);
   }
 }
 

@@ -66,7 +66,8 @@ class Accumulation {
     for (int s = 0; s < f_.signals; ++s) {
       const float a = sum_of(now[s]), b = sum_of(past[s]);
       const float change = fabsf(a - b) / max(max(a, b), 1e-6f);
-      least_weight_[s] = clamp((change - realtime::kNoChange) * realtime::kHaste, 0.0f, 1.0f);
+      least_weight_[s] =
+          clamp((change - realtime::kNoChange) * realtime::kChangeResponse, 0.0f, 1.0f);
     }
   }
   static float sum_of(const F (&columns)[kParts]) {
@@ -78,7 +79,7 @@ class Accumulation {
   void blend(int x, int y, int part) {
     const FastPast& place = places_[y - y0_][part];
     const F own_part = f_.part.load(x, y);
-    const F longer = min(place.of(before_.age, x, y) + 1.0f, realtime::kLongest);
+    const F longer = min(place.of(before_.age, x, y) + 1.0f, realtime::kMaxHistory);
     const F age = select(place.known, longer, F(1.0f));
     f_.age.store(x, y, age);
     for (int s = 0; s < f_.signals; ++s) {
@@ -91,20 +92,20 @@ class Accumulation {
         // Rays that a rough surface scatters seldom meet a lamp: one that does is made no brighter
         // than the others.
         // A rounding error below zero must not become 0 / 0 where all is dark.
-        const F most = max(realtime::kSpike * luminance_about(f_, s, x, y), F(0.0f));
+        const F most = max(realtime::kMaxSpikeRatio * luminance_about(f_, s, x, y), F(0.0f));
         now = select<F>(l > most, now * (most / l), now);
         l = min(l, most);
         // Images in mirrors do not move with the mirror's surface.
         const MaskLanes moves =
             !((f_.motion_x.load(x, y) == F(0.0f)) & (f_.motion_y.load(x, y) == F(0.0f)));
         weight = select(moves & (f_.roughness.load(x, y) < realtime::kSharpMirror),
-                        max(weight, realtime::kMovingMirror), weight);
+                        max(weight, realtime::kMovingMirrorWeight), weight);
       }
       // Old light out of the range of its neighbours is a trail of something that has moved on.
       const F gain = gain_[s].from(x, y);
       const Vec3Of<F> old = place.of(before_.signal[s], x, y) * gain;
-      const Vec3Of<F> least = mean - deviation * F(realtime::kRange),
-                      most = mean + deviation * F(realtime::kRange);
+      const Vec3Of<F> least = mean - deviation * F(realtime::kHistoryClampSigma),
+                      most = mean + deviation * F(realtime::kHistoryClampSigma);
       const Vec3Of<F> kept{clamp(old.x, least.x, most.x), clamp(old.y, least.y, most.y),
                            clamp(old.z, least.z, most.z)};
       out_[s].store(x, y, select<F>(place.known, lerp(kept, now, weight), now));
@@ -241,7 +242,7 @@ F spread_around(const FastPlane3& signal, int step, int x, int y, const Counts& 
 F sharpness(F deviation, F light) { return 1.0f / (2.0f * deviation + 0.005f * light + 1e-4f); }
 F likeness(F light, F own, F sharp) {
   const F d = (light - own) * sharp;
-  return 1.0f / (1.0f + sqr(min(d * d, realtime::kFarthest)));
+  return 1.0f / (1.0f + sqr(min(d * d, realtime::kMaxSquaredDeviation)));
 }
 F corner_weight(int dx, int dy) { return dx != 0 && dy != 0 ? 0.5f : 0.75f; }
 
@@ -268,7 +269,8 @@ void FastFilter::smooth_signals(const FastFrame& f, int round, const FastPlane3*
         total[s] = 1.0f;
         if (round == 0) deviation[s].store(x, y, deviation_at(f, s, x, y));
         F spread = deviation[s].load(x, y);
-        if (s != kDirectSignal && round < realtime::kSpikeRounds) {  // light of lamps has edges
+        if (s != kDirectSignal &&
+            round < realtime::kSpikeFilterRounds) {  // light of lamps has edges
           spread = max(spread, spread_around(from[s], step, x, y, [&](int qx, int qy) {
                          return f.part.load(qx, qy) == part;
                        }));

@@ -29,7 +29,7 @@ struct Sums {
     // Part of the change that is not likely to be chance (James and Stein 1961, the positive part).
     const float scatter = max(sum(square, first) - sqr(more) / count, 0.0f);
     const float variance = scatter * count / (count - 1);
-    const float sure = max(1 - sqr(realtime::kSureness) * variance / max(sqr(more), 1e-30f), 0.0f);
+    const float sure = max(1 - sqr(realtime::kGainSigma) * variance / max(sqr(more), 1e-30f), 0.0f);
     return clamp(1 + sure * more / old, 0.0f, realtime::kMostGain);
   }
 };

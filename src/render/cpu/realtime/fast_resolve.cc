@@ -114,8 +114,8 @@ void resolve_lanes(const FastFrame& before, const LightGain& gain, const FilterW
   past = past * gain.from(x, y);
   const MaskLanes same = around.edge | (edge > 0.0f) | (part == f.part.load(x, y));
   const MaskLanes known = inside & same & (pictures > 0.0f);
-  const Vec3Of<F> reach =
-      around.color.deviation * F(realtime::kPastRange) + around.color.mean * F(realtime::kSlack);
+  const Vec3Of<F> reach = around.color.deviation * F(realtime::kMeanClampSigma) +
+                          around.color.mean * F(realtime::kMeanClampSlack);
   const Vec3Of<F> least = around.color.mean - reach, most = around.color.mean + reach;
   const auto keep = [](F value, F low, F high) { return max(clamp(value, low, high), F(0.0f)); };
   const Vec3Of<F> kept{keep(past.x, least.x, most.x), keep(past.y, least.y, most.y),

@@ -49,9 +49,9 @@ bool FastHistory::find_moving_lamps(const SceneView& scene) {
   // Lamps that go on or out change the rows, so none can be followed; cells notice such changes.
   bool moves = false;
   for (uint32_t i = 0; !moves && now.size() == lamps_.size() && i < scene.lights.size; ++i) {
-    moves = scene.lights[i].strength > realtime::kWeakLamp * strongest &&
-            (length(now[i].p_W - lamps_[i].p_W) > realtime::kLampWay ||
-             length(now[i].direction - lamps_[i].direction) > realtime::kLampTurn);
+    moves = scene.lights[i].strength > realtime::kMinLampStrength * strongest &&
+            (length(now[i].p_W - lamps_[i].p_W) > realtime::kMaxLampShift ||
+             length(now[i].direction - lamps_[i].direction) > realtime::kMaxLampTurn);
   }
   lamps_ = std::move(now);
   return moves;
@@ -104,7 +104,7 @@ void FastHistory::add_picture(const Job& job, uint32_t pass, RenderWatch* watch)
     cache.lamps_move = lamps_move_;
     trace({job.scene, job.tracer, job.camera, cache, seed}, pass, job.slices);
     cache_.ask(requests_);
-    if (first && cache_.size() > realtime::kManyCells && coarse_ < realtime::kCoarsest) {
+    if (first && cache_.size() > realtime::kMaxFirstCells && coarse_ < realtime::kMaxEdgeFactor) {
       coarse_ *= 2;
       cache_ = {};
       continue;

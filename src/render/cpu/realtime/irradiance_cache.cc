@@ -143,13 +143,13 @@ void IrradianceCache::trace_cell(const SceneView& scene, const CpuTracer& tracer
     paths::State<F> path;
     UintLanes index;
     const uint32_t begin =
-        cell.rounds % realtime::kRounds * realtime::kRays + static_cast<uint32_t>(first);
+        cell.rounds % realtime::kRoundsPerPointSet * realtime::kRays + static_cast<uint32_t>(first);
     for (int i = 0; i < kLaneCount; ++i) set_lane(&index, i, begin + static_cast<uint32_t>(i));
     const uint64_t mixed = cell.key * 0x9E3779B97F4A7C15ull;
     // Rays of one round after the other go on with the same points: all that a mean is of are
     // spread evenly.
-    path.sampler = SamplerOf<F>::make(seed ^ mixed, cell.rounds / realtime::kRounds, UintLanes(0u),
-                                      UintLanes(0u), index, 0);
+    path.sampler = SamplerOf<F>::make(seed ^ mixed, cell.rounds / realtime::kRoundsPerPointSet,
+                                      UintLanes(0u), UintLanes(0u), index, 0);
     path.throughput = in_all_lanes<F>({1, 1, 1});
     // Each stratum is a part of a ring: over compact patches of directions a rare bright lamp left
     // spots.
@@ -163,7 +163,7 @@ void IrradianceCache::trace_cell(const SceneView& scene, const CpuTracer& tracer
       set_lane(&path.ray.o, i, start.p);
       set_lane(&normal, i, start.n);
       set_lane(&g, i, start.g);
-      set_lane(&seeks, i, (first + i) / realtime::kRaysTogether % 2 != 0);
+      set_lane(&seeks, i, (first + i) / realtime::kRaysPerBatch % 2 != 0);
     }
     const Vec3Of<F> local = in_air ? phase_direction(g, u) : cosine_direction(u);
     path.ray.d = FrameOf<F>::from_z(normal).to_world(local);
@@ -240,15 +240,15 @@ void IrradianceCache::find_changes() {
   const auto key_of = [&](size_t k) { return cells_[asked_[k]].key; };
   groups_.each(traced_.size(), caches::kRegion, key_of, [&](auto group) {
     const LightChange sum = change_of(group);
-    const bool changed = fabsf(sum.change) > realtime::kSurprise * sqrtf(sum.variance) +
+    const bool changed = fabsf(sum.change) > realtime::kChangeSigma * sqrtf(sum.variance) +
                                                  realtime::kNoRegionChange * sum.light;
     for (const auto& [key, k] : group) traced_[k].changed = changed && !traced_[k].is_new;
   });
   // Light that fades everywhere shows here long before it shows in each region.
   groups_.each(traced_.size(), 0, key_of, [&](auto group) {
     const LightChange sum = change_of(group);
-    if (fabsf(sum.change) >
-        realtime::kSurprise * sqrtf(sum.variance) + realtime::kFades * sum.light) {
+    if (fabsf(sum.change) > realtime::kChangeSigma * sqrtf(sum.variance) +
+                                realtime::kGlobalChangeThreshold * sum.light) {
       for (Traced& traced : traced_) traced.changed = true;
     }
   });
@@ -291,14 +291,15 @@ uint64_t IrradianceCache::trace(const SceneView& scene, const CpuTracer& tracer,
     if (!remembers) cell.samples = 0;
     if (traced.changed) excess_.forget(cell.key);
     ++cell.rounds;
-    cell.stir = max(traced.stir, realtime::kSettles * cell.stir);
-    const auto memory = static_cast<int>(realtime::kMemory / (1 + realtime::kStirred * cell.stir));
+    cell.stir = max(traced.stir, realtime::kMotionDecay * cell.stir);
+    const auto memory =
+        static_cast<int>(realtime::kMaxCellRays / (1 + realtime::kMotionMemoryDivisor * cell.stir));
     cell.samples = std::min(cell.samples, std::max(memory - realtime::kRays, 0));
     const float weight =
         static_cast<float>(realtime::kRays) / static_cast<float>(cell.samples + realtime::kRays);
     light = light.is_known() ? lerp(light, traced.light, weight) : traced.light;
     cell.variance = lerp(cell.variance, traced.variance, weight);
-    cell.samples = std::min(cell.samples + realtime::kRays, realtime::kMemory);
+    cell.samples = std::min(cell.samples + realtime::kRays, realtime::kMaxCellRays);
     cell.last_traced = update_;
     rays += traced.rays;
   }
@@ -337,8 +338,9 @@ double IrradianceCache::extrapolate(int round, bool remembers) {
   const double relative_change = light > 0 ? std::abs(change) / light : 1;
   // Two quotients that agree tell it from noise. While a picture waits there is time for one.
   const double ratio = remembers ? quotient : std::min(quotient, last_quotient);
-  const auto dies = [](double r) { return r > 0 && r < realtime::kMostRatio; };
-  if (terms_ < (remembers ? 3 : 4) || relative_change <= realtime::kWorthIt) return relative_change;
+  const auto dies = [](double r) { return r > 0 && r < realtime::kMaxSeriesRatio; };
+  if (terms_ < (remembers ? 3 : 4) || relative_change <= realtime::kMinSeriesGain)
+    return relative_change;
   if (!dies(quotient) || !(remembers || dies(last_quotient))) return relative_change;
   const auto factor = static_cast<float>(std::max(0.0, 1 + change * ratio / ((1 - ratio) * light)));
   for (size_t k = 0; k < asked_.size(); ++k) {
@@ -376,7 +378,8 @@ uint64_t IrradianceCache::update(const SceneView& scene, const CpuTracer& tracer
     const auto waits = [this](uint32_t row) {
       const Cell& cell = cells_[row];
       if (cell.samples == 0) return 1e9f;
-      return static_cast<float>(update_ - cell.last_traced) * (1 + realtime::kStirred * cell.stir);
+      return static_cast<float>(update_ - cell.last_traced) *
+             (1 + realtime::kMotionMemoryDivisor * cell.stir);
     };
     std::stable_sort(asked_.begin(), asked_.end(),
                      [&](uint32_t a, uint32_t b) { return waits(a) > waits(b); });
@@ -390,7 +393,8 @@ uint64_t IrradianceCache::update(const SceneView& scene, const CpuTracer& tracer
     if (remembers && !many) continue;
     const double relative_change = extrapolate(i, remembers);
     if (many && rounds < realtime::kMostRounds) ++rounds;
-    const bool rests = relative_change < realtime::kSettled && last_change < realtime::kSettled;
+    const bool rests = relative_change < realtime::kConvergenceThreshold &&
+                       last_change < realtime::kConvergenceThreshold;
     last_change = relative_change;
     if (settles && ((i > 1 && rests) || i + 1 + realtime::kMeanRounds == kFirstRounds)) {
       remembers = true;
@@ -403,11 +407,11 @@ uint64_t IrradianceCache::update(const SceneView& scene, const CpuTracer& tracer
 
 void IrradianceCache::forget() {
   ++update_;
-  excess_.end_update(realtime::kForgotten);
+  excess_.end_update(realtime::kCellLifetime);
   size_t kept = 0;
   for (size_t row = 0; row < cells_.size(); ++row) {
     cells_[row].starts = 0;
-    if (cells_[row].last_asked + realtime::kForgotten < update_) continue;
+    if (cells_[row].last_asked + realtime::kCellLifetime < update_) continue;
     cells_[kept] = cells_[row];
     light_[kept] = light_[row];
     homes_[kept] = homes_[row];

@@ -204,8 +204,8 @@ inline constexpr float kPixelFilterSigma = 0.42f, kPixelFilterCut = 1.25f;
 template <class F>
 GLOAM_HD Vec2Of<F> sample_pixel_filter(Vec2Of<F> u) {
   u = to_disc(u);
-  constexpr float kReach = 0.98807186f;  // 1 - exp(-(cut / sigma)² / 2)
-  const F r = kPixelFilterSigma * square_root(-2.0f * natural_log(1.0f - u.x * kReach));
+  constexpr float kTruncatedMass = 0.98807186f;  // 1 - exp(-(cut / sigma)² / 2)
+  const F r = kPixelFilterSigma * square_root(-2.0f * natural_log(1.0f - u.x * kTruncatedMass));
   F s, c;
   sincos_turn(u.y, &s, &c);
   return {r * c, r * s};

@@ -30,7 +30,7 @@ namespace lidar {
 /// Surfaces that one ray may meet.
 inline constexpr int kMostSurfaces = 8;
 /// Two-way fraction of the pulse below which it is not followed.
-inline constexpr float kFaint = 1e-4f;
+inline constexpr float kMinTwoWayTransmission = 1e-4f;
 
 /// Half the mean divergence [rad], as a GGX width. The spot that a flat mirror throws back at the
 /// receiver is as wide as the beam has become: seen from there, the mirror is as rough as this.
@@ -182,7 +182,7 @@ GLOAM_HD void trace_echoes(const SceneView& scene, const Tracer& tracer, const L
       }
     });
     fraction *= passed;
-    active = active & (fraction * fraction > lidar::kFaint);
+    active = active & (fraction * fraction > lidar::kMinTwoWayTransmission);
     if (!any(active)) return;
     const MaskOf<F> crossing = active & !unseen & (dot(d, s.geometric) < 0.0f);
     absorption = paths::absorption_beyond(scene, s, crossing, absorption);

@@ -123,7 +123,7 @@ class LidarEchoes {
  public:
   /// The weakest gives way where there is no room.
   GLOAM_HD void add(const LidarEcho& echo) {
-    if (count_ == kMost) {
+    if (count_ == kMaxEchoes) {
       int weakest = 0;
       for (int i = 1; i < count_; ++i) {
         if (echoes_[i].signal < echoes_[weakest].signal) weakest = i;
@@ -161,8 +161,8 @@ class LidarEchoes {
   GLOAM_HD void resize(int count) { count_ = count; }
 
  private:
-  static constexpr int kMost = 64;
-  LidarEcho echoes_[kMost];
+  static constexpr int kMaxEchoes = 64;
+  LidarEcho echoes_[kMaxEchoes];
   int count_ = 0;
 };
 

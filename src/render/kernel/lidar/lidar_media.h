@@ -127,8 +127,8 @@ GLOAM_HD float cross_media(const MediaView& media, const LidarOptics& optics, co
       float to = min(walk.to(), from + step);
       if (soft != nullptr) {
         // The overlap grows as the square of the range at first: no long steps near the sensor.
-        constexpr float kGrowth = 0.2f;
-        to = min(to, from + kGrowth * max(way + from, 0.01f));
+        constexpr float kStepGrowth = 0.2f;
+        to = min(to, from + kStepGrowth * max(way + from, 0.01f));
         to = min(to, max(soft->end_of_bin(way + from) - way, from + 1e-3f * step));
       }
       const Vec3f p_W = ray.o + ray.d * (0.5f * (from + to));

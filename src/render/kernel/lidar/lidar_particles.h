@@ -14,7 +14,7 @@ namespace gloam::lidar {
 inline constexpr float kCell = 0.5f;
 /// Radius of the beam in which particles are sampled, in half widths at 1/e²: beyond it is a 90th
 /// of the power on the axis.
-inline constexpr float kRim = 1.5f;
+inline constexpr float kSampledBeamRadius = 1.5f;
 /// Least half width of a beam [m].
 inline constexpr float kThinnest = 5e-4f;
 
@@ -94,14 +94,15 @@ class CellParticles {
     if (!(cell_.mean > 0)) return;
     const float u = uniform_float(draw(key_, stream_, index_).v[0]);
     float p = expf(-cell_.mean), sum = p;
-    for (; u >= sum && count_ < kMost; sum += p) p *= cell_.mean / static_cast<float>(++count_);
+    for (; u >= sum && count_ < kMaxParticles; sum += p)
+      p *= cell_.mean / static_cast<float>(++count_);
   }
   GLOAM_HD int count() const { return count_; }
   GLOAM_HD ParticleHit operator[](int i) const {
     const uint32_t at = index_ + 1 + 2 * static_cast<uint32_t>(i);
     const Philox4 a = draw(key_, stream_, at), b = draw(key_, stream_, at + 1);
     // Even over the cross-section at the cell's far end; nearer by, some lie beside the beam.
-    const float radius = kRim * sqrtf(uniform_float(a.v[0]));
+    const float radius = kSampledBeamRadius * sqrtf(uniform_float(a.v[0]));
     float s, c;
     sincos_turn(uniform_float(a.v[1]), &s, &c);
     const float range = from_ + kCell * uniform_float(a.v[2]);
@@ -113,7 +114,7 @@ class CellParticles {
   }
 
  private:
-  static constexpr int kMost = 120;
+  static constexpr int kMaxParticles = 120;
   GLOAM_HD uint32_t class_at(float u) const {
     float sum = 0;
     for (uint32_t i = cell_.first; i < set_.classes.size; ++i) sum += set_.classes[i].number;

@@ -16,7 +16,8 @@ struct AmbientPath {
 
 namespace ambient {
 
-inline constexpr float kSpread = 0.2f;  ///< of the rays' cones: no fine texture is sought
+inline constexpr float kAmbientConeSpread =
+    0.2f;  ///< of the rays' cones: no fine texture is sought
 
 /// Light that arrives along the ray, save that of lights which the direct tier samples itself.
 template <class Tracer>
@@ -24,11 +25,12 @@ GLOAM_HD Vec3f incoming(const SceneView& scene, const Tracer& tracer, const Ray&
                         Sampler sampler) {
   RayHit hit;
   if (!tracer.trace(ray, false, &hit)) {
-    return sky_radiance(scene, ray.d, kSpread) + scene.sky_ambient;
+    return sky_radiance(scene, ray.d, kAmbientConeSpread) + scene.sky_ambient;
   }
   if (scene.instances[hit.instance].light >= 0) return {};
   constexpr int kRoulette = 3;
-  return trace_path(scene, tracer, ray, 0.0f, kSpread, {max_depth - 1, kRoulette}, sampler)
+  return trace_path(scene, tracer, ray, 0.0f, kAmbientConeSpread, {max_depth - 1, kRoulette},
+                    sampler)
       .radiance;
 }
 

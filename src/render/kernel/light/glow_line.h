@@ -13,10 +13,10 @@ namespace gloam::glow {
 inline constexpr float kNearGlow = 0.1f;
 
 /// Distance, in reaches of the glowing medium, within which its nearest part is the brightest: a
-/// point is chosen among kDraws there (Talbot et al. 2005, "Importance resampling for global
-/// illumination").
-inline constexpr float kBeside = 2;
-inline constexpr int kDraws = 2;
+/// point is chosen among kGlowCandidates there (Talbot et al. 2005, "Importance resampling for
+/// global illumination").
+inline constexpr float kNearGlowReach = 2;
+inline constexpr int kGlowCandidates = 2;
 
 /// A line from p through a medium that glows.
 struct LineSample {
@@ -48,17 +48,17 @@ GLOAM_HD LineSample sample_line(const MediaView& media, Vec3f p, Vec3f n, Vec2f 
   const GlowView& glow = *choice.glow;
   const VolumeView& v = media.volumes[glow.volume];
   LightSample& light = out.light;
-  const bool beside = length_squared(glow.center - p) < sqr(kBeside * glow.reach);
+  const bool beside = length_squared(glow.center - p) < sqr(kNearGlowReach * glow.reach);
   const auto weight_of = [&](Vec3f to) {
     return beside ? point_weight(to, 0, kNearGlow, n) : 1.0f;
   };
-  const int draws = beside ? kDraws : 1;
+  const int draws = beside ? kGlowCandidates : 1;
   WalkRandom random({u.y, u.x});
   Vec3f to;
   float weights = 0;
   for (int i = 0; i < draws; ++i) {
     const PointSample point = sample_point(v, glow, u);
-    u = {u.x + 1.0f / kDraws, random.next()};
+    u = {u.x + 1.0f / kGlowCandidates, random.next()};
     if (u.x >= 1) u.x -= 1;
     if (!(point.density > 0)) continue;
     const Vec3f there = transform_point(glow.X_WG, point.p_G) - p;

@@ -65,7 +65,7 @@ GLOAM_HD float mean_inverse_square(Vec3f to, Vec3f h, float d2) {
 /// Bound, up to a factor, of what the node's lights bring to a surface at p with the unit normal n
 /// if nothing is in between; n = 0 takes light from all sides. Zero only if they bring nothing.
 GLOAM_HD float bound(const LightNode& node, Vec3f p, Vec3f n) {
-  constexpr float kLeast = 1e-36f;  // that a bound does not vanish by rounding
+  constexpr float kMinImportance = 1e-36f;  // that a bound does not vanish by rounding
   if (!(node.power > 0)) return 0;
   const bool has_side = n.x != 0 || n.y != 0 || n.z != 0;
   if ((node.flags & LightNode::kFar) != 0) {
@@ -75,7 +75,7 @@ GLOAM_HD float bound(const LightNode& node, Vec3f p, Vec3f n) {
       if (angle >= 0.5f * kPi) return 0;
       cosine = fade(angle, 0.5f * kPi);
     }
-    return max(node.power * (cosine + 0.05f), kLeast);
+    return max(node.power * (cosine + 0.05f), kMinImportance);
   }
   const Vec3f to = node.center - p, h = node.half;
   const float d2 = dot(to, to), r2 = dot(h, h);
@@ -94,13 +94,13 @@ GLOAM_HD float bound(const LightNode& node, Vec3f p, Vec3f n) {
     if (!(facing > 0)) return 0;
     weight *= facing;
   }
-  return max(weight * mean_inverse_square(to, h, d2), kLeast);
+  return max(weight * mean_inverse_square(to, h, d2), kMinImportance);
 }
 
 /// Probabilities of the three roots. Occlusion is not known, so each that may bring light gets
 /// its part of three quarters: a sun outdoors must not leave a room's lamps without rays.
 GLOAM_HD void root_probabilities(const LightTreeView& tree, Vec3f p, Vec3f n, double* roots) {
-  constexpr double kEven = 0.75;
+  constexpr double kUniformFraction = 0.75;
   double total = 0;
   int some = 0;
   for (uint32_t i = 0; i < LightTreeView::kRoots; ++i) {
@@ -109,7 +109,8 @@ GLOAM_HD void root_probabilities(const LightTreeView& tree, Vec3f p, Vec3f n, do
     some += roots[i] > 0 ? 1 : 0;
   }
   for (uint32_t i = 0; i < LightTreeView::kRoots; ++i) {
-    if (roots[i] > 0) roots[i] = (1 - kEven) * roots[i] / total + kEven / some;
+    if (roots[i] > 0)
+      roots[i] = (1 - kUniformFraction) * roots[i] / total + kUniformFraction / some;
   }
 }
 

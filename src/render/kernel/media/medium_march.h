@@ -113,12 +113,12 @@ GLOAM_HD float glow_step(const MediumWalk& walk, Bands bands) {
 namespace media {
 
 /// Transmittance below which nothing behind is seen.
-inline constexpr float kDark = 1e-3f;
+inline constexpr float kMinTransmittance = 1e-3f;
 
 /// Distance [m] at which the ray leaves the last volume, or even media alone hide what follows.
 /// `walk` is at its beginning.
 GLOAM_HD float end_of_view(const MediumWalk& walk, Bands bands) {
-  constexpr float kDarkDepth = 7;
+  constexpr float kMaxOpticalDepth = 7;
   float end = 0, hidden = 3e38f;
   for (int i = 0; i < walk.count(); ++i) {
     const VolumeView& v = walk[i].volume();
@@ -126,8 +126,8 @@ GLOAM_HD float end_of_view(const MediumWalk& walk, Bands bands) {
     if (!v.density.empty() || v.fade > 0) continue;
     const Vec3f k = bands.of(v.mass_extinction) * v.even_density;
     const float clearest = min(k.x, min(k.y, k.z));
-    if (clearest * (walk[i].end() - walk[i].to()) > kDarkDepth)
-      hidden = min(hidden, walk[i].to() + kDarkDepth / clearest);
+    if (clearest * (walk[i].end() - walk[i].to()) > kMaxOpticalDepth)
+      hidden = min(hidden, walk[i].to() + kMaxOpticalDepth / clearest);
   }
   return min(end, hidden);
 }
@@ -187,7 +187,7 @@ GLOAM_HD MarchResult march(const MediaView& media, const Ray& ray, float tmax, f
       const Vec3f weight = before * media::mean_transmittance(mean.extinction * ds) * ds;
       result.scattered += weight * mean.scattering;
       result.radiance += weight * source(MarchStep{mean, begin, ds, weight, is_hot});
-      if (max_component(result.transmittance) < media::kDark) return result;
+      if (max_component(result.transmittance) < media::kMinTransmittance) return result;
     }
   }
   return result;

@@ -43,7 +43,8 @@ class CellWalk {
       left_[a] = d[a] > 0 ? cells[a] - 1 - cell : cell;
       stride_[a] = d[a] > 0 ? stride[a] : -stride[a];
       delta_[a] = kBoundsVoxels / fabsf(d[a]);
-      next_[a] = left_[a] > 0 && d[a] != 0 ? (static_cast<float>(wall) - o[a]) / d[a] : kNever;
+      next_[a] =
+          left_[a] > 0 && d[a] != 0 ? (static_cast<float>(wall) - o[a]) / d[a] : kNoCollision;
     }
     volume_ = &volume;
     is_inside_ = false;
@@ -58,7 +59,7 @@ class CellWalk {
     if (is_inside_) {
       const int a = axis_;
       index_ += stride_[a];
-      next_[a] = --left_[a] > 0 ? next_[a] + delta_[a] : kNever;
+      next_[a] = --left_[a] > 0 ? next_[a] + delta_[a] : kNoCollision;
     }
     is_inside_ = true;
     axis_ = next_[0] <= next_[1] ? (next_[0] <= next_[2] ? 0 : 2) : (next_[1] <= next_[2] ? 1 : 2);
@@ -78,7 +79,7 @@ class CellWalk {
   GLOAM_HD float end() const { return end_; }  ///< distance at which the ray leaves the box [m]
 
  private:
-  static constexpr float kNever = 3e38f;
+  static constexpr float kNoCollision = 3e38f;
 
   // Nothing is initialised before start(): most of MediumWalk's are never used.
   const VolumeView* volume_;

@@ -19,7 +19,8 @@ GLOAM_HD AirLamp sample_air(const SceneView& scene, const Ray& ray, const Medium
                             Vec3f weight, Vec3f p_W, Vec2f u) {
   AirLamp out{{}, p_W, {}};
   LightSampler light_sampler;
-  prepare_light_sampler<float>(scene, p_W, Vec3f{}, true, realtime::kOneGlow, &light_sampler);
+  prepare_light_sampler<float>(scene, p_W, Vec3f{}, true, realtime::kGlowProbability,
+                               &light_sampler);
   out.lamp = sample_lamp<float>(scene, light_sampler, p_W, Vec3f{}, u, ray.time, true);
   const LightSample& light = out.lamp.light;
   const bool has_surface = length_squared(light.lift) > 0;
@@ -94,9 +95,9 @@ GLOAM_HD AirLight air_light(const Tracer& tracer, const IrradianceCacheView& cac
   const Vec3f jitter{random->next(), random->next(), random->next()}, middle{0.5f, 0.5f, 0.0f};
   AirCell cell = cell_for(jitter, coarser);
   *request = {cell.key, p_W, d, g};
-  if (random->next() < realtime::kLargerCell)
-    request->key = cell_for(middle, coarser + realtime::kLargerLevels).key;
-  for (uint32_t more = 0; cell.row < 0 && more <= realtime::kLargerLevels; ++more) {
+  if (random->next() < realtime::kCoarserCellProbability)
+    request->key = cell_for(middle, coarser + realtime::kCoarserCellLevels).key;
+  for (uint32_t more = 0; cell.row < 0 && more <= realtime::kCoarserCellLevels; ++more) {
     cell = cell_for(middle, coarser + more);
   }
   if (cell.row < 0) return otherwise;
@@ -223,7 +224,7 @@ class AirRay {
     const Vec3f scattered = point.scattering * step.weight;
     const float scatters = max_component(scattered);
     // Some steps ask the cache, the fewer the less they scatter, and count for as many more.
-    if (const float probability = min(scatters / realtime::kSureScattering, 1.0f);
+    if (const float probability = min(scatters / realtime::kCertainScattering, 1.0f);
         choice_.takes(probability)) {
       CacheRequest asked;
       const float g = luminance(point.g_scattering) / luminance(point.scattering);
@@ -237,7 +238,7 @@ class AirRay {
       weight_asked_ += scatters / probability;
       if (random_.next() * weight_asked_ < scatters / probability) *request = asked;
     }
-    const float brings = scatters * luminance(air_.all * realtime::kEvenLamps + air_.lamps);
+    const float brings = scatters * luminance(air_.all * realtime::kUniformLampWeight + air_.lamps);
     in_all_ += brings;
     for (LampStep& one : kept_) {
       if (random_.next() * in_all_ < brings) one = {point, p_W, step.weight, brings};

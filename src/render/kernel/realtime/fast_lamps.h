@@ -191,8 +191,9 @@ GLOAM_HD_LARGE LampLightOf<F> direct_light(const FastWorld<Tracer>& world,
   }
   uint32_t samples = options.samples;
   if (scene.lights.size > 0) {
-    const float glow =
-        options.every ? 0.0f : (samples > 1 ? realtime::kGlowAmongLamps : realtime::kOneGlow);
+    const float glow = options.every
+                           ? 0.0f
+                           : (samples > 1 ? realtime::kGlowAmongLamps : realtime::kGlowProbability);
     prepare_light_sampler(scene, v.p, v.geometric, active, glow, &path->light_sampler);
   }
   if (options.every || scene.lights.size == 0) samples = scene.lights.size;

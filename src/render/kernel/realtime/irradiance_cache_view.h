@@ -28,9 +28,11 @@ GLOAM_HD CellLight lerp(const CellLight& a, const CellLight& b, float t) {
 /// corners and under things it differs from the cell's mean.
 GLOAM_HD Vec3f light_at(const CellLight& cell, float near) {
   if (!cell.is_known()) return cell.all;
-  const Vec3f far = (cell.all - cell.near) / max(1.0f - cell.near_fraction, realtime::kLeastFar);
-  const Vec3f close = (cell.near + far * (realtime::kNearDoubt * realtime::kNearDarkness)) /
-                      (cell.near_fraction + realtime::kNearDoubt);
+  const Vec3f far =
+      (cell.all - cell.near) / max(1.0f - cell.near_fraction, realtime::kMinFarFraction);
+  const Vec3f close =
+      (cell.near + far * (realtime::kNearPriorFraction * realtime::kNearPriorLight)) /
+      (cell.near_fraction + realtime::kNearPriorFraction);
   return lerp(far, close, near);
 }
 
@@ -150,7 +152,7 @@ GLOAM_HD CacheCellOf<F> cache_cell(const IrradianceCacheView& cache, Vec3Of<F> p
   const FrameOf<F> frame = FrameOf<F>::from_z(n);
   // Off the surface, as faces of rooms and boxes like to lie on the borders of cells.
   const Vec3Of<F> at =
-      (p + (frame.x * shift.x + frame.y * shift.y + n * F(realtime::kOffSurface)) * cell.edge) *
+      (p + (frame.x * shift.x + frame.y * shift.y + n * F(realtime::kSurfaceOffset)) * cell.edge) *
       per_edge;
   cell.place = {floor_of(at.x), floor_of(at.y), floor_of(at.z)};
   return cell;

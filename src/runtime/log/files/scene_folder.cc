@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr int kMostEntries = 20000;  // of folders that are searched for a moved file
-constexpr int kDeepest = 8;          // levels below a folder that is searched
+constexpr int kMaxFolderDepth = 8;   // levels below a folder that is searched
 constexpr uint64_t kSceneMagic = 0x313043534D4F4C47ull;  // "GLOMSC01"
 constexpr uint64_t kLargestFile = uint64_t{1} << 30;     // as McapLimits::attachment_bytes
 
@@ -169,7 +169,7 @@ class SceneFinder {
                                           code);
       for (const fs::recursive_directory_iterator end; !code && it != end; it.increment(code)) {
         if (++entries > kMostEntries) return;
-        if (it.depth() >= kDeepest) it.disable_recursion_pending();
+        if (it.depth() >= kMaxFolderDepth) it.disable_recursion_pending();
         std::error_code other;
         if (it->is_regular_file(other))
           by_name_.emplace(it->path().filename().string(), it->path());

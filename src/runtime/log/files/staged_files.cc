@@ -13,8 +13,8 @@ namespace gloam {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr int kMostUp = 16;                   // levels that a scene's files may lie above it
-constexpr std::chrono::hours kKept{24 * 30};  // unused folders are removed after a month
+constexpr int kMaxParentLevels = 16;  // levels that a scene's files may lie above it
+constexpr std::chrono::hours kRetentionTime{24 * 30};  // unused folders are removed after a month
 
 fs::path staging_folder() { return cache_folder() / "replays"; }
 
@@ -28,7 +28,7 @@ void remove_old_folders() {
         name.size() == 16 && name.find_first_not_of("0123456789abcdef") == std::string::npos;
     std::error_code other;
     const auto used = fs::last_write_time(it->path(), other);
-    if (is_ours && !other && fs::file_time_type::clock::now() - used > kKept)
+    if (is_ours && !other && fs::file_time_type::clock::now() - used > kRetentionTime)
       fs::remove_all(it->path(), other);
   }
 }
@@ -48,7 +48,7 @@ Result<StagedFiles> StagedFiles::make(const RunText& text) {
   int up = 0;
   for (const std::string& name : names) {
     const int levels = levels_up(name);
-    if (fs::path(name).is_absolute() || levels > kMostUp)
+    if (fs::path(name).is_absolute() || levels > kMaxParentLevels)
       return Error{ErrorKind::kInput,
                    fmt::format("the log's scene refers to '{:.80}', outside its folder", name)};
     up = std::max(up, levels);

@@ -9,8 +9,8 @@
 namespace gloam {
 namespace {
 
-constexpr double kUpright = 1e-9;        // z of a normal below which the facet is a wall
-constexpr double kAsGoodAsAWall = 1e-3;  // z of a normal below which the surface counts as a wall
+constexpr double kVerticalNormalZ = 1e-9;  // z of a normal below which the facet is a wall
+constexpr double kWallNormalZ = 1e-3;      // z of a normal below which the surface counts as a wall
 
 }  // namespace
 
@@ -56,14 +56,14 @@ void ColliderBottom::set_pose(const mjData& d) {
   mju_addTo3(centre_, p_);
   for (int a = 0; a < 3; ++a) half_[a] = reach(R_ + 3 * a);
   const double a = R_[6] * R_[6] + R_[7] * R_[7];
-  per_round_ = a > kUpright * kUpright ? 1 / a : 0;
-  per_upright_ = std::abs(R_[8]) > kUpright ? 1 / R_[8] : 0;
+  per_round_ = a > kVerticalNormalZ * kVerticalNormalZ ? 1 / a : 0;
+  per_upright_ = std::abs(R_[8]) > kVerticalNormalZ ? 1 / R_[8] : 0;
   lower_.clear(), upper_.clear(), upright_.clear();
   for (const SolidPlane& plane : planes_) {
     SolidPlane world;
     mju_mulMatVec3(world.n, R_, plane.n);
     world.offset = plane.offset + mju_dot3(world.n, p_);
-    if (std::abs(world.n[2]) < kUpright) {
+    if (std::abs(world.n[2]) < kVerticalNormalZ) {
       upright_.push_back(world);
       continue;
     }
@@ -77,7 +77,7 @@ bool ColliderBottom::at(double x, double y, BottomPoint* out) const {
   if (std::abs(x - centre_[0]) > half_[0] || std::abs(y - centre_[1]) > half_[1]) return false;
   if (is_round()) {
     round_at({&x, 1}, &y, &out->z, &out->slope[0], &out->slope[1]);
-    return out->z < kNowhere;
+    return out->z < kNoSurface;
   }
   if (!planes_.empty()) {
     const Facet* facet = facet_at(x, y, &out->z);
@@ -89,7 +89,7 @@ bool ColliderBottom::at(double x, double y, BottomPoint* out) const {
   if (!quadric_at(x, y, &out->z, normal)) return false;
   for (int a = 0; a < 3; ++a) n[a] = dot3(R_ + 3 * a, normal);
   // The normal is scaled to unit length first.
-  const double down = std::min(n[2], -kAsGoodAsAWall * std::sqrt(dot3(n, n)));
+  const double down = std::min(n[2], -kWallNormalZ * std::sqrt(dot3(n, n)));
   out->slope[0] = -n[0] / down, out->slope[1] = -n[1] / down;
   return true;
 }
@@ -99,7 +99,7 @@ void ColliderBottom::at_each(std::span<const double> xs, const double* ys, doubl
   if (is_round()) return round_at(xs, ys, z, slope_x, slope_y);
   for (size_t i = 0; i < xs.size(); ++i) {
     BottomPoint point;
-    z[i] = at(xs[i], ys[i], &point) ? point.z : kNowhere;
+    z[i] = at(xs[i], ys[i], &point) ? point.z : kNoSurface;
     slope_x[i] = point.slope[0], slope_y[i] = point.slope[1];
   }
 }
@@ -110,14 +110,14 @@ bool ColliderBottom::height_at(double x, double y, double* z) const {
   double out[3];
   if (!is_round()) return quadric_at(x, y, z, out);
   round_at({&x, 1}, &y, z, out, out + 1);
-  return *z < kNowhere;
+  return *z < kNoSurface;
 }
 
 // Null: it is not above (x, y).
 const ColliderBottom::Facet* ColliderBottom::facet_at(double x, double y, double* z) const {
   for (const SolidPlane& wall : upright_)
     if (wall.n[0] * x + wall.n[1] * y > wall.offset) return nullptr;
-  double low = -kNowhere, high = kNowhere;
+  double low = -kNoSurface, high = kNoSurface;
   const Facet* lowest = nullptr;
   for (const Facet& f : lower_) {
     const double at = f.a * x + f.b * y + f.c;
@@ -150,7 +150,7 @@ bool ColliderBottom::quadric_at(double x, double y, double* out, double* normal)
 // Entry point of the line: through the round side, then normal[2] = 0, or through an end.
 bool ColliderBottom::cylinder_at(const double* o, const double* d, double* t,
                                  double* normal) const {
-  double low = -kNowhere, high = kNowhere;
+  double low = -kNoSurface, high = kNoSurface;
   const double b = o[0] * d[0] + o[1] * d[1];
   const double c = o[0] * o[0] + o[1] * o[1] - size_[0] * size_[0];
   if (per_round_ > 0) {

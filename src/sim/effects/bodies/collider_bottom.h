@@ -41,7 +41,7 @@ class ColliderBottom {
   const double* rotation() const { return R_; }
   /// False: it is not above (x, y).
   bool at(double x, double y, BottomPoint* out) const;
-  /// At many places; z = kNowhere: it is not above that one.
+  /// At many places; z = kNoSurface: it is not above that one.
   void at_each(std::span<const double> xs, const double* ys, double* z, double* slope_x,
                double* slope_y) const;
   /// Only how high [m].
@@ -51,7 +51,7 @@ class ColliderBottom {
   /// none.
   void round_ends(double level, std::span<const double> ys, double* left, double* right) const;
 
-  static constexpr double kNowhere = 1e30;  ///< [m]
+  static constexpr double kNoSurface = 1e30;  ///< [m]
 
  private:
   struct Facet {

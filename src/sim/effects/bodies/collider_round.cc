@@ -80,7 +80,7 @@ void ColliderBottom::round_at(std::span<const double> xs, const double* ys, doub
     const double s = between(s0 - ahead * root(r2 - away), 0, b.length);
     const double dx = qx - s * ux, dy = qy - s * uy;
     const double square = r2 - dx * dx - dy * dy, down = root(square);
-    z[i] = square >= 0 ? b.a[2] + s * uz - down : kNowhere;
+    z[i] = square >= 0 ? b.a[2] + s * uz - down : kNoSurface;
     const double per_down = 1 / (down > steepest ? down : steepest);
     slope_x[i] = dx * per_down, slope_y[i] = dy * per_down;
   }

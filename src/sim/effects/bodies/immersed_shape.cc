@@ -9,7 +9,7 @@
 namespace gloam {
 namespace {
 
-constexpr double kRound = std::numbers::pi;
+constexpr double kEllipseFactor = std::numbers::pi;
 constexpr int kLines = 6;        // through an element along each edge
 constexpr int kMostAlong = 100;  // elements along an edge
 
@@ -83,13 +83,13 @@ double exact_volume(const mjModel& m, int geom, double sampled) {
     case mjGEOM_BOX:
       return 8 * s[0] * s[1] * s[2];
     case mjGEOM_SPHERE:
-      return kRound * 4 / 3 * s[0] * s[0] * s[0];
+      return kEllipseFactor * 4 / 3 * s[0] * s[0] * s[0];
     case mjGEOM_ELLIPSOID:
-      return kRound * 4 / 3 * s[0] * s[1] * s[2];
+      return kEllipseFactor * 4 / 3 * s[0] * s[1] * s[2];
     case mjGEOM_CYLINDER:
-      return kRound * s[0] * s[0] * 2 * s[1];
+      return kEllipseFactor * s[0] * s[0] * 2 * s[1];
     case mjGEOM_CAPSULE:
-      return kRound * s[0] * s[0] * (2 * s[1] + s[0] * 4 / 3);
+      return kEllipseFactor * s[0] * s[0] * (2 * s[1] + s[0] * 4 / 3);
     default:
       return sampled;
   }
@@ -203,7 +203,7 @@ std::optional<ImmersedShape> immersed_shape(const mjModel& m, int geom, int elem
   if (!(sampled > 0)) return {};
   shape.volume = exact_volume(m, geom, sampled);
   for (VolumeElement& e : shape.elements) e.volume *= shape.volume / sampled;
-  shape.radius = std::cbrt(shape.volume * 3 / 4 / kRound);
+  shape.radius = std::cbrt(shape.volume * 3 / 4 / kEllipseFactor);
   // Along x and y as much of the bounding box as along z.
   const double full = seen / (4 * half[0] * half[1]);
   for (int a = 0; a < 3; ++a) shape.area[a] = full * 4 * half[(a + 1) % 3] * half[(a + 2) % 3];
@@ -211,7 +211,7 @@ std::optional<ImmersedShape> immersed_shape(const mjModel& m, int geom, int elem
     shape.area[0] = shape.area[1] = 4 * half[0] * half[2];
   } else if (m.geom_type[geom] == mjGEOM_CAPSULE) {
     const double r = half[0], length = 2 * (half[2] - r);
-    shape.area[0] = shape.area[1] = 2 * r * length + kRound * r * r;
+    shape.area[0] = shape.area[1] = 2 * r * length + kEllipseFactor * r * r;
   }
   make_clusters(low, &shape);
   set_drag(m, geom, &shape);

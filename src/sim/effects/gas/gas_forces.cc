@@ -12,7 +12,7 @@
 namespace gloam {
 namespace {
 
-constexpr Rational kLookRate{50, 1};  // [Hz]
+constexpr Rational kForceUpdateRate{50, 1};  // [Hz]
 // Share of its velocity through the air that drag may take from a body in a step: with more what is
 // very light would swing.
 constexpr double kMostPerStep = 0.25;
@@ -82,7 +82,7 @@ GasForces::GasForces(const CompiledWorld& world, Rational timestep)
       model_(*world.model),
       blows_(world.wind.blows()),
       is_mujocos_(has_own_drag(model_)),
-      looks_(StepSchedule::at_most(kLookRate, timestep)) {
+      looks_(StepSchedule::at_most(kForceUpdateRate, timestep)) {
   const mjModel& m = model_;
   std::vector<bool> moves(static_cast<size_t>(m.nbody));
   for (int b = 1; b < static_cast<int>(m.nbody); ++b) {

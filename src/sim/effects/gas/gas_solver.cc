@@ -14,7 +14,7 @@ namespace {
 
 /// Smoke of which 10 km take a tenth of the light: transport leaves traces everywhere, and what is
 /// empty costs renderers nothing [kg/m³].
-constexpr float kUnseen = 1e-9f;
+constexpr float kMinSmokeDensity = 1e-9f;
 constexpr int kLeastCells = 4, kMostCells = gas::kLongestRow;  ///< along an axis
 
 Error bad(std::string message, std::string hint) {
@@ -156,7 +156,7 @@ void GasSolver::read(std::vector<float>* density, std::vector<float>* temperatur
     const size_t from = size_t(s.at(0, j, k)), to = state.walls.cell(0, j, k);
     const float* smoke = &state.scalars[gas::kSmoke][from];
     float* shown = density->data() + to;
-    for (int i = 0; i < s.nx; ++i) shown[i] = smoke[i] > kUnseen ? smoke[i] : 0.0f;
+    for (int i = 0; i < s.nx; ++i) shown[i] = smoke[i] > kMinSmokeDensity ? smoke[i] : 0.0f;
     const float* heat = &state.scalars[gas::kHeat][from];
     float* kelvin = temperature->data() + to;
     for (int i = 0; i < s.nx; ++i) kelvin[i] = ambient / (1.0f - min(heat[i], 0.9f));

@@ -5,7 +5,7 @@
 namespace gloam::gas {
 namespace {
 
-constexpr int kCoarsest = 3;  ///< cells along an axis of a level that is not coarsened further
+constexpr int kCoarsestCells = 3;  ///< cells along an axis of a level that is not coarsened further
 
 /// Distance of the centres of two cells between which face i lies.
 float distance(const std::vector<float>& width, int i) {
@@ -24,7 +24,7 @@ Multigrid::Multigrid(const Shape& shape) : open_(size_t(shape.size()), 0) {
     for (Field& w : level.weight) w.assign(n, 0.0f);
     for (Field* f : {&level.inverse, &level.x, &level.b, &level.scratch}) f->assign(n, 0.0f);
     for (int a = 0; a < 3; ++a) level.width[a].assign(size_t(s.n(a)) + 2, 1.0f);
-    if (std::max({s.nx, s.ny, s.nz}) <= kCoarsest) break;
+    if (std::max({s.nx, s.ny, s.nz}) <= kCoarsestCells) break;
     s = Shape::of((s.nx + 1) / 2, (s.ny + 1) / 2, (s.nz + 1) / 2);
   }
   const size_t longest = size_t(std::max({shape.nx, shape.ny, shape.nz})) + 1;

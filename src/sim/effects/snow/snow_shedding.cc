@@ -12,7 +12,7 @@
 namespace gloam {
 namespace {
 
-constexpr Rational kLookRate{50, 1};  // [Hz]
+constexpr Rational kUpdateRate{50, 1};  // [Hz]
 constexpr double kDegree = std::numbers::pi / 180;
 constexpr double kBreaks = 15 * kDegree, kHolds = 7.5 * kDegree;
 constexpr double kSlideTime = 0.3;  // [s]
@@ -54,7 +54,7 @@ Result<std::unique_ptr<Effect>> SnowShedding::make(const EffectParts& parts) {
 }
 
 SnowShedding::SnowShedding(const EffectParts& parts, double depth, double growth)
-    : schedule_(StepSchedule::at_most(kLookRate, parts.timestep)),
+    : schedule_(StepSchedule::at_most(kUpdateRate, parts.timestep)),
       timestep_(parts.timestep.value()),
       start_(depth),
       growth_(growth) {

@@ -5,11 +5,11 @@
 namespace gloam {
 namespace {
 
-constexpr double kNoWay = 1e-9;     // [m]
-constexpr double kMovesOn = 0.05;   // [m/s]
-constexpr double kHeapWidth = 1.5;  // width of a heap, over the sinkage beside it
-constexpr double kNoSlide = 1e-5;   // [m]
-constexpr int kFarthest = 64;       // cells to it
+constexpr double kMinDistance = 1e-9;   // [m]
+constexpr double kMinSlipSpeed = 0.05;  // [m/s]
+constexpr double kHeapWidth = 1.5;      // width of a heap, over the sinkage beside it
+constexpr double kMinExcess = 1e-5;     // [m]
+constexpr int kFarthest = 64;           // cells to it
 
 }  // namespace
 
@@ -34,13 +34,13 @@ void SoilBed::push_aside(const SoilTouch& touch, const double* velocity, double 
   const double* centre = contacts_.centre(touch.patch);
   double way[2] = {touch.p[0] - centre[0], touch.p[1] - centre[1]};
   const double speed = std::hypot(velocity[0], velocity[1]);
-  if (speed > kMovesOn) {
+  if (speed > kMinSlipSpeed) {
     const double across[2] = {-velocity[1] / speed, velocity[0] / speed};
     const double side = way[0] * across[0] + way[1] * across[1] < 0 ? -1 : 1;
     way[0] = side * across[0], way[1] = side * across[1];
   }
   const double length = std::hypot(way[0], way[1]);
-  if (length < kNoWay) return;
+  if (length < kMinDistance) return;
   // From cell to cell, out of what is touched, then over as many as the heap is wide.
   const double step = std::min(soil_.dx, soil_.dy);
   const int wide = std::clamp(static_cast<int>(std::ceil(kHeapWidth * touch.depth / step)), 2, 8);
@@ -74,7 +74,7 @@ SoilBed::Steep SoilBed::steepest(int cell, Slope slope) const {
       if (excess > most.excess) most = {beside, excess};
     }
   }
-  return most.excess < kNoSlide ? Steep{} : most;
+  return most.excess < kMinExcess ? Steep{} : most;
 }
 
 // Loose soil slides from a cell to its lowest neighbour, and where walls do not stand also into it

@@ -6,8 +6,8 @@
 namespace gloam {
 namespace {
 
-constexpr double kMovedAside = 0.1;  // over the edge of a cell
-constexpr double kMovedDown = 0.05;  // over what it has sunk in
+constexpr double kLateralTolerance = 0.1;   // over the edge of a cell
+constexpr double kSinkageTolerance = 0.05;  // over what it has sunk in
 
 }  // namespace
 
@@ -77,7 +77,7 @@ void SoilContacts::add(const ColliderBottom& collider) {
 // points along its normal. Where it is steep, rising moves its edge the less.
 bool SoilContacts::has_stayed(const ColliderBottom& collider, Footprint* print) const {
   if (!print->known || print->touches.empty()) return false;
-  if (fallen_ - print->fallen > kMovedDown * print->deepest) return false;
+  if (fallen_ - print->fallen > kSinkageTolerance * print->deepest) return false;
   const double *p = collider.position(), *R = collider.rotation(), *q = print->anchor;
   double aside[2];
   for (int a = 0; a < 2; ++a) {
@@ -87,7 +87,7 @@ bool SoilContacts::has_stayed(const ColliderBottom& collider, Footprint* print) 
   }
   const double moved = std::sqrt(aside[0] * aside[0] + aside[1] * aside[1]) +
                        collider.turned(print->R) * print->size;
-  if (moved > kMovedAside * std::min(soil_.dx, soil_.dy)) return false;
+  if (moved > kLateralTolerance * std::min(soil_.dx, soil_.dy)) return false;
   // A point c of the world then is at p + T (c - p0) now.
   double T[9];
   mju_mulMatMatT(T, R, print->R, 3, 3, 3);
@@ -101,7 +101,7 @@ bool SoilContacts::has_stayed(const ColliderBottom& collider, Footprint* print) 
       move[a] = shift[a] + T[3 * a] * c[0] + T[3 * a + 1] * c[1] + T[3 * a + 2] * c[2];
     const double rise = move[2] - touch.slope[0] * move[0] - touch.slope[1] * move[1];
     const double steep = 1 + std::abs(touch.slope[0]) + std::abs(touch.slope[1]);
-    if (std::abs(rise) > kMovedDown * print->deepest * steep) return false;
+    if (std::abs(rise) > kSinkageTolerance * print->deepest * steep) return false;
     print->rise.push_back(rise);
   }
   return true;

@@ -70,23 +70,23 @@ struct SoilLanes {
     return out;
   }
   double loading_at(size_t i, double n, double z) const {
-    constexpr double kLeast = 1e-12;  // [m]
+    constexpr double kMinSinkage = 1e-12;  // [m]
     z = z < bottom[i] ? z : bottom[i];
-    return modulus[i] * power(z > kLeast ? z : kLeast, n);
+    return modulus[i] * power(z > kMinSinkage ? z : kMinSinkage, n);
   }
 };
 
 inline void SoilLanes::find_loading(const SoilStrength& s, const double* motion, double dt) {
-  constexpr double kNoWay = 1e-9;  // [m]
+  constexpr double kMinSlip = 1e-9;  // [m]
   const double per_way = 1 / s.shear;
   for (size_t i = 0; i < kSide; ++i) {
     const double steep = 1 + slope[0][i] * slope[0][i] + slope[1][i] * slope[1][i];
     per_steep[i] = 1 / steep, stretch[i] = std::sqrt(steep);
     loading[i] = loading_at(i, s.n, depth[i]);
     const Slip slip = slip_at(i, motion);
-    const double way = slip.speed * dt, moves = way > kNoWay ? 1.0 : 0.0;
+    const double way = slip.speed * dt, moves = way > kMinSlip ? 1.0 : 0.0;
     share[i] = moves * (1 - exponential(-way * per_way));
-    const double per_speed = -moves / (slip.speed > kNoWay ? slip.speed : 1.0);
+    const double per_speed = -moves / (slip.speed > kMinSlip ? slip.speed : 1.0);
     for (int a = 0; a < 3; ++a) shearing[a][i] = slip.v[a] * per_speed;
   }
 }
@@ -103,7 +103,7 @@ inline void SoilLanes::find_unloading(const SoilStrength& s) {
 }
 
 inline void SoilLanes::find_forces(const SoilStrength& s, const double* motion, double dt) {
-  constexpr double kStill = 1e-9;  // [m]
+  constexpr double kMinMotion = 1e-9;  // [m]
   const double per_way = 1 / s.shear;
   for (size_t i = 0; i < kSide; ++i) {
     const Slip slip = slip_at(i, motion);
@@ -119,7 +119,7 @@ inline void SoilLanes::find_forces(const SoilStrength& s, const double* motion, 
     // Shear, over the true area.
     const double most = on * stretch[i] * (s.cohesion + p * s.tan_friction);
     const double way = slip.speed * dt, gone = 1 - exponential(-way * per_way);
-    across[i] = most * (way > kStill ? gone / slip.speed : dt * per_way);
+    across[i] = most * (way > kMinMotion ? gone / slip.speed : dt * per_way);
     along[i] = stiffness[i] - across[i] * per_steep[i];
     const double held = most * (1 - gone);
     f[0][i] = held * shear[0][i] - load[i] * slope[0][i];

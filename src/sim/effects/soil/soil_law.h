@@ -16,11 +16,12 @@ namespace gloam {
 
 /// Lines of unloading are so many times as steep as those to the origin, at least: at shallow
 /// sinkages Wong's, which was fitted to deep ones, would be flatter than loading.
-constexpr double kSteeper = 3;
+constexpr double kMinUnloadingSlopeRatio = 3;
 
 /// k_u [N/m³] at the sinkage z_u [m], where the pressure is p_u [Pa].
 inline double unloading_of(const SoilStrength& s, double z_u, double p_u) {
-  const double wong = s.k_0 + s.a_u * z_u, least = kSteeper * p_u / (z_u > 0 ? z_u : 1.0);
+  const double wong = s.k_0 + s.a_u * z_u,
+               least = kMinUnloadingSlopeRatio * p_u / (z_u > 0 ? z_u : 1.0);
   return wong > least ? wong : least;
 }
 
@@ -33,7 +34,7 @@ struct SoilLine {
 /// is as steep as one from there: after a touch by a hair it would stay below the curve where that
 /// is convex.
 inline SoilLine unloading_line(double z_u, double p_u, double k_u, double per_z, double z) {
-  const double steeper = kSteeper * per_z;
+  const double steeper = kMinUnloadingSlopeRatio * per_z;
   const double slope = ((z > z_u) & (steeper > k_u)) ? steeper : k_u;
   return {p_u - slope * (z_u - z), slope};
 }

@@ -194,7 +194,7 @@ void SoilContacts::sum_cells(const ColliderBottom& collider, Footprint* print) {
   collider.at_each(s.x, s.y.data(), s.z.data(), s.slope_x.data(), s.slope_y.data());
   int row = -1;
   for (size_t n = 0; n < count; ++n) {
-    if (s.z[n] >= ColliderBottom::kNowhere) continue;  // by a rounding
+    if (s.z[n] >= ColliderBottom::kNoSurface) continue;  // by a rounding
     if (s.cell[n] < row || s.cell[n] >= row + soil_.nx) {
       flush(row, collider, print);
       row = s.cell[n] / soil_.nx * soil_.nx;

@@ -6,9 +6,9 @@ namespace gloam {
 namespace {
 
 constexpr int kMostIterations = 8;
-constexpr double kConverged = 2e-2;   // fraction of the change of velocity
-constexpr double kLeastSpeed = 1e-9;  // [m/s], [rad/s]
-constexpr double kRestored = 0.1;     // fraction of the energy of an impact, at most
+constexpr double kConvergenceTolerance = 2e-2;  // fraction of the change of velocity
+constexpr double kLeastSpeed = 1e-9;            // [m/s], [rad/s]
+constexpr double kRestored = 0.1;               // fraction of the energy of an impact, at most
 
 // A x = b, (6 x 6), row by row; x in b's place. Gauss with pivots of rows.
 void solve6(double* A, double* b) {
@@ -158,7 +158,7 @@ double SoilBed::push_body(const mjModel& m, mjData& d, const Body& body, uint32_
       size = std::max(size, std::abs(is - now.velocity[k]));
       motion[k] = is;
     }
-    if (moved < kConverged * size) break;
+    if (moved < kConvergenceTolerance * size) break;
   }
   for (const double x : wrench)
     if (!std::isfinite(x)) return 0;

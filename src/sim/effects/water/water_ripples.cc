@@ -12,9 +12,9 @@ namespace gloam {
 namespace {
 
 constexpr double kDecay = 2 * std::numbers::pi;  // decay with depth, for waves of 1 m [1/m]
-constexpr float kLoss = 0.15f;       // loss of the rate of change, to walls and eddies [1/s]
-constexpr float kSmoothing = 0.02f;  // loss of waves as short as a cell, per step
-constexpr float kStill = 2e-6f;      // [m] and [m/s]: nobody sees it
+constexpr float kLoss = 0.15f;           // loss of the rate of change, to walls and eddies [1/s]
+constexpr float kSmoothing = 0.02f;      // loss of waves as short as a cell, per step
+constexpr float kCalmThreshold = 2e-6f;  // [m] and [m/s]: nobody sees it
 constexpr int kFirstFields = 4;
 
 int substeps_of(const WaterDescription& water, double interval) {
@@ -139,7 +139,7 @@ bool WaterRipples::settle() {
   float most = 0;
   for (size_t i = 0; i < height_.size(); ++i)
     most = std::max({most, std::abs(height_[i]), std::abs(rate_[i])});
-  return most < kStill;
+  return most < kCalmThreshold;
 }
 
 void WaterRipples::publish() {

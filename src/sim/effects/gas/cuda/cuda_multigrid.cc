@@ -53,7 +53,7 @@ CudaMultigrid::CudaMultigrid(const Multigrid& multigrid) : levels_(size_t(multig
     const Shape& s = levels_[size_t(l)].shape;
     const int values = small_.values + SmallLevels::kArrays * s.size();
     if (s.nx * s.ny * s.nz > SmallLevels::kMostCells || values > kSmallValues) break;
-    if (int(levels_.size()) - l > SmallLevels::kMost) break;
+    if (int(levels_.size()) - l > SmallLevels::kMaxLevels) break;
     small_.first = l, small_.values = values;
   }
   int place = 0;

@@ -28,7 +28,7 @@ struct CycleWork {
 /// Levels that one block keeps in its own memory.
 struct SmallLevels {
   static constexpr int kArrays = 7;  ///< arrays of a level there: weights, inverse, x, b, scratch
-  static constexpr int kMost = 12;
+  static constexpr int kMaxLevels = 12;
   static constexpr int kMostCells = 2048;  ///< limit of one level
   struct Level {
     Shape shape;
@@ -38,7 +38,7 @@ struct SmallLevels {
     const int* parent[3];
     int place;  ///< offset of its values in the block's memory
   };
-  Level levels[kMost];
+  Level levels[kMaxLevels];
   int first, count, values;
   const CycleWork* works;
   const float* b;  ///< right side of the first level

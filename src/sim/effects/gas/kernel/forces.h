@@ -19,7 +19,7 @@ GLOAM_HD float buoyancy(float heat, float smoke, float ambient_density) {
 /// rise and mix as measured in voxels of 0.1 and 0.16 m (gas_flow_test.cc).
 inline constexpr float kFluctuation = 2.2f;
 /// Fall of heat from a cell to the one above, over the sum of both, from which on gas overturns.
-inline constexpr float kOverturning = 0.05f;
+inline constexpr float kConvectionThreshold = 0.05f;
 
 /// MurmurHash3's finaliser: lanes compute it too.
 GLOAM_HD uint32_t mix_bits(uint32_t x) {
@@ -52,8 +52,8 @@ GLOAM_HD float lift(const LiftView& v, int c) {
   const int b = c - v.shape.sz;
   const float rough = 1.0f - 0.5f * (v.smooth[c] + v.smooth[b]);
   const float heat = v.heat[c] + v.heat[b];
-  const float overturns =
-      clamp((v.heat[b] - v.heat[c]) / (kOverturning * heat + kNothing), 0.0f, 1.0f);
+  const float overturns = clamp(
+      (v.heat[b] - v.heat[c]) / (kConvectionThreshold * heat + kMinConcentration), 0.0f, 1.0f);
   const float share = 1.0f + kFluctuation * max(rough, overturns) * fluctuation(c, v.count);
   return v.open[c] * v.dt *
          buoyancy(share * 0.5f * heat, 0.5f * (v.smoke[c] + v.smoke[b]), v.ambient_density);

@@ -16,7 +16,7 @@ inline constexpr float kHottest = 2300.0f;
 inline constexpr float kHeatPerAir = 13.1e6f * 0.232f;  ///< [J/kg]
 
 /// Concentrations below this are none: what decays for ever would slow processors down [kg/m³].
-inline constexpr float kNothing = 1e-12f;
+inline constexpr float kMinConcentration = 1e-12f;
 
 /// GasProperties as a step needs them.
 struct ReactionRates {
@@ -52,10 +52,10 @@ GLOAM_HD Reaction react(const ReactionRates& r, float* heat, float* smoke, float
   const float kept = min(sum - *heat * r.cool, r.hottest);
   out.heat_lost = sum - kept;
   *heated = kept - *heat;
-  *heat = kept < kNothing ? 0.0f : kept;
-  *smoke = *smoke < kNothing ? 0.0f : *smoke;
-  *fuel = *fuel < kNothing ? 0.0f : *fuel;
-  *spent = *spent < kNothing ? 0.0f : *spent;
+  *heat = kept < kMinConcentration ? 0.0f : kept;
+  *smoke = *smoke < kMinConcentration ? 0.0f : *smoke;
+  *fuel = *fuel < kMinConcentration ? 0.0f : *fuel;
+  *spent = *spent < kMinConcentration ? 0.0f : *spent;
   return out;
 }
 

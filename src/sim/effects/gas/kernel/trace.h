@@ -90,7 +90,7 @@ GLOAM_HD bool comes_near_walls(Vec3f moved, Vec3f velocity, uint8_t clear) {
 }
 
 /// Shortening of a path by walls above which velocity is carried in first order only [voxels].
-inline constexpr float kTrustedLoss = 0.25f;
+inline constexpr float kMaxPathLoss = 0.25f;
 
 /// The same near walls. False if what was in the way matters.
 GLOAM_HD bool displacement_near_walls(const Carrier& v, const Faces<const float>& open, int i,
@@ -105,7 +105,7 @@ GLOAM_HD bool displacement_near_walls(const Carrier& v, const Faces<const float>
   Vec3f forward = here * 2.0f + whole;
   const float lost = walk(v.shape, open, i, j, k, &whole);
   *moved = -whole;
-  return max(lost, walk(v.shape, open, i, j, k, &forward)) <= kTrustedLoss;
+  return max(lost, walk(v.shape, open, i, j, k, &forward)) <= kMaxPathLoss;
 }
 
 }  // namespace gloam::gas
