@@ -141,10 +141,9 @@ inline constexpr auto kCameraOutputs = [] {
 
 /// Outputs of a run that can be recorded: all camera outputs, and the others.
 inline constexpr auto kRecordOutputs = [] {
-  constexpr std::string_view kOtherOutputs[] = {"lidar", "metrics", "contact_sheet", "sensors",
-                                                "state"};
-  std::array<std::string_view, kCameraOutputs.size() + std::size(kOtherOutputs)> all;
-  std::ranges::copy(kOtherOutputs, std::ranges::copy(kCameraOutputs, all.begin()).out);
+  constexpr std::string_view kOthers[] = {"lidar", "metrics", "contact_sheet", "sensors", "state"};
+  std::array<std::string_view, kCameraOutputs.size() + std::size(kOthers)> all;
+  std::ranges::copy(kOthers, std::ranges::copy(kCameraOutputs, all.begin()).out);
   return all;
 }();
 

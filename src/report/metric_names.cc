@@ -58,9 +58,9 @@ Better better_of(const std::string& name) {
   const size_t point = name.rfind('.');
   const std::string own = point == std::string::npos ? name : name.substr(point + 1);
   for (const char* word : kHigherIsBetter)
-    if (has_word(own, word)) return Better::kHigherIsBetter;
+    if (has_word(own, word)) return Better::kMore;
   for (const char* word : kLowerIsBetter)
-    if (has_word(own, word)) return Better::kLowerIsBetter;
+    if (has_word(own, word)) return Better::kLess;
   return Better::kUnknown;
 }
 

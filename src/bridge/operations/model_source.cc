@@ -7,7 +7,6 @@
 #include <cctype>
 #include <fstream>
 
-#include "base/files.h"
 #include "bridge/operations/model_text.h"
 #include "gloam/options.h"
 #include "gloam/program.h"
@@ -26,6 +25,12 @@ Error refuse(SpawnFailure* failure, SpawnFailure cause, std::string message,
              std::string hint = {}) {
   *failure = cause;
   return Error{ErrorKind::kInput, std::move(message), {}, std::move(hint)};
+}
+
+std::string lower_extension_of(const fs::path& path) {
+  std::string extension = path.extension().string();
+  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return extension;
 }
 
 // "%20" as a blank; what is no such code stays.
@@ -103,7 +108,7 @@ Status check_as_scene_would(const fs::path& file, const Scene& scene) {
   Scene only;
   only.file = scene.file.empty() && !scene.bare_model.empty() ? scene.bare_model : scene.file;
   only.access = scene.access;
-  if (is_mesh_extension(lower_extension(file))) {
+  if (is_mesh_extension(lower_extension_of(file))) {
     only.objects.push_back({.name = "it", .file = file});
   } else {
     only.robots.push_back({.name = "it", .file = file});
@@ -204,7 +209,7 @@ Result<SceneEntity> ModelSource::find(const SpawnRequest& request, const Scene& 
       *failure = SpawnFailure::kNoResource;
       return path.error();
     }
-    const std::string extension = lower_extension(*path);
+    const std::string extension = lower_extension_of(*path);
     if (is_mesh_extension(extension))
       return SceneEntity(ObjectOptions{.file = *path, .X_WO = X_WE});
     if (!is_model_extension(extension))

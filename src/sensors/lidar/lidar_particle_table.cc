@@ -35,7 +35,7 @@ LidarCell make_cell(const LidarOptics& optics, const std::vector<LidarParticle>&
                     size_t k) {
   LidarCell cell;
   const Vec2f half = lidar::half_widths(optics, static_cast<float>(k + 1) * lidar::kCell);
-  const float volume = kPi * half.x * half.y * sqr(lidar::kRim) * lidar::kCell;
+  const float volume = kPi * half.x * half.y * sqr(lidar::kSampledBeamRadius) * lidar::kCell;
   // Noise lifts nothing over the threshold that is weaker than itself.
   const float least = optics.threshold / lidar::kLeastRatio;
   size_t first = classes.size();

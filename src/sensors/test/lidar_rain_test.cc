@@ -154,7 +154,7 @@ TEST(LidarInRain, ParticlesAreAsManyAndAsBrightAsTheirLawSays) {
   const Vec2f half = lidar::half_widths(optics, static_cast<float>(k + 1) * lidar::kCell);
   EXPECT_NEAR(half.x, std::hypot(0.005, 0.5 * 4e-3 * 10.5), 1e-6);
   std::vector<LidarCell> cells(k + 1);
-  const float volume = kPi * half.x * half.y * sqr(lidar::kRim) * lidar::kCell;
+  const float volume = kPi * half.x * half.y * sqr(lidar::kSampledBeamRadius) * lidar::kCell;
   cells[k].mean = drop.number * volume;
   const LidarParticles set{{drops.data(), 1}, {cells.data(), k + 1}, 1};
   optics.particles = {&set, 1};

@@ -189,7 +189,7 @@ std::vector<Operation> world_operations() {
       {"remove", "removes an entity; the scene is recompiled", kQueued, {name}, remove_entity},
       {"named_poses", "lists the named places: [{name, position, …}]", kQueued, {}, named_poses},
       {"spawnables",
-       "lists what 'spawn' can add: [{uri, description, size}]",
+       "lists the models that 'spawn' can add: [{uri, description, size}]",
        kQueued,
        {},
        spawnables},

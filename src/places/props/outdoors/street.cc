@@ -513,8 +513,8 @@ Prop planter(Workshop& shop) {
 }
 
 constexpr PropKind kStreet[] = {
-    {"wheelie_bin", wheelie_bin, "refuse bin of 240 l with a hinged lid"},
-    {"waste_container", waste_container, "refuse container of 1,100 l"},
+    {"wheelie_bin", wheelie_bin, "wheelie bin of 240 l with a hinged lid"},
+    {"waste_container", waste_container, "waste container of 1,100 l"},
     {"street_lamp", street_lamp, "mast with an LED head of 8,000 lm"},
     {"park_bench", park_bench, "oak slats on iron frames"},
     {"mailbox", mailbox, "letter box on a post"},
