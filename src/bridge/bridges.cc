@@ -1,4 +1,4 @@
-// gloam::Bridges: starts what a scene asks for, around one Operator and one token.
+// gloam::Bridges: starts the bridges of a scene, around one Operator and one token.
 
 #include <algorithm>
 #include <cstdlib>

@@ -18,7 +18,7 @@ int lowest_layer(const Floors& floors, size_t sample) {
   return layer;
 }
 
-/// Fills what is NaN; returns how much that was.
+/// Fills NaN samples; returns their number.
 int64_t fill(const HeightGrid& grid, std::vector<float>* z) {
   const auto around = [&](size_t sample, auto&& visit) {
     const int c = static_cast<int>(sample % static_cast<size_t>(grid.columns));

@@ -1,4 +1,4 @@
-// The renderer: a scene and the stages that make pictures of it, those of the CPU and, where there
+// The renderer: a scene and the stages that render images of it, on the CPU and, where there
 // is one, a card's.
 
 #include <algorithm>

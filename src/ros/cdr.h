@@ -23,7 +23,7 @@ namespace gloam {
 static_assert(std::endian::native == std::endian::little,
               "CdrWriter copies numbers without swapping bytes");
 
-/// What has one size on the wire. `char` and std::byte are the ROS types char and byte.
+/// Types of fixed size on the wire. `char` and std::byte are the ROS types char and byte.
 template <class T>
 concept CdrPrimitive = std::is_arithmetic_v<T> || std::same_as<T, std::byte>;
 
@@ -92,7 +92,7 @@ class CdrReader {
   /// A string where it stands in the message.
   bool read_string(std::string_view* text, size_t bound = 0);
   /// The count of a sequence whose elements take `least_size` >= 1 bytes each, or more. Fails when
-  /// they cannot fit into what is left.
+  /// they cannot fit into the remaining bytes.
   bool read_count(size_t* count, size_t least_size);
   template <CdrPrimitive T>
   bool read_array(std::span<T> values) {

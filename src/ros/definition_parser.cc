@@ -8,7 +8,7 @@
 namespace gloam {
 namespace {
 
-// Limits of a stranger's definition, far above those of ROS's own.
+// Limits for untrusted definitions, far above those of ROS's own messages.
 constexpr size_t kMostText = size_t{1} << 20, kMostMessages = 512, kMostFields = 1024;
 constexpr size_t kLongestName = 255;
 

@@ -60,7 +60,8 @@ std::pair<int, int> size_of(const CameraRequest& request, const World& world) {
 
 /// Makes a picture soon of a request for one that takes long: a quarter of its width, and path
 /// traced, since the fast tier takes seconds to fill its cache before it shows anything. False: it
-/// takes not long, or so much that it must be tried as it is, lest a lack of memory shows later.
+/// takes not long, or so much that it must be tried as it is, so that a lack of memory does not
+/// show later.
 bool make_preview(const World& world, CameraRequest* request) {
   constexpr int kFraction = 4;
   constexpr int64_t kMostPixels = int64_t{16} << 20;

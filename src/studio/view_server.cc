@@ -117,7 +117,7 @@ class ViewServer::Impl : public WebEvents {
   }
 
   void send_picture(const CameraFrame& frame, uint64_t sequence) {
-    // One waits for whoever comes first: the next may take seconds.
+    // One image waits for the first client: the next one may take seconds.
     if (clients_ == 0 && has_picture_) return;
     has_picture_ = true;
     const auto& cameras = driver_.cameras();

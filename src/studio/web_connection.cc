@@ -161,7 +161,7 @@ void WebConnection::become_websocket() {
     self->client_ = ++self->shared_.last_client;
     self->shared_.clients[self->client_] = self.get();
     self->shared_.events->on_open(self->client_);
-    // After what on_open has sent.
+    // After the messages of on_open.
     net::post(self->websocket_->get_executor(), [self] {
       if (self->shared_.picture) self->send_picture(self->shared_.picture);
     });
@@ -248,7 +248,7 @@ void WebConnection::close(websocket::close_code code, std::string_view reason) {
   }
   websocket_->async_close({code, beast::string_view(reason.data(), reason.size())},
                           [self = shared_from_this()](error_code) { self->last_moment_.cancel(); });
-  // A client that does not read cannot be told: then the socket just goes.
+  // A client that does not read cannot be notified: the socket is simply closed.
   last_moment_.expires_after(kCloseTimeout);
   last_moment_.async_wait([self = shared_from_this()](error_code error) {
     if (!error) beast::get_lowest_layer(*self->websocket_).close();

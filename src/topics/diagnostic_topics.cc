@@ -1,6 +1,6 @@
 // Topics of diagnostics. /diagnostics is a function of the instant alone, so that equal runs have
-// equal messages; what depends on the wall clock is in /diagnostics/performance, which no log has
-// that does not ask for it.
+// equal messages; values that depend on the wall clock are in /diagnostics/performance, which no
+// log has that does not ask for it.
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-// Topics that are heard: goals, controls, poses, forces, resets.
+// Input topics: goals, controls, poses, forces, resets.
 
 #include <fmt/format.h>
 

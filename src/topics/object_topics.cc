@@ -1,4 +1,4 @@
-// Topics of what moves about and is no robot: objects as boxes, people and vehicles.
+// Topics of moving elements other than robots: objects as boxes, people and vehicles.
 
 #include <algorithm>
 #include <cmath>

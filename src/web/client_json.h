@@ -1,5 +1,5 @@
 #pragma once
-// JSON that clients send, bounded in depth: whoever walks a value recurses.
+// JSON that clients send, bounded in depth, because readers of a value recurse.
 
 #include <nlohmann/json.hpp>
 #include <string_view>

@@ -170,7 +170,7 @@ Status Channels::add_reader(const ClientPtr& client, const SubscribeMessage::Ite
   Outlet& outlet = feed->outlets[channel->info.topic];
   outlet.is_latched = channel->is_latched;
   outlet.readers.push_back({client, item.id});
-  if (outlet.is_latched && !outlet.latched) feed->has_ended = true;  // it is said again
+  if (outlet.is_latched && !outlet.latched) feed->has_ended = true;  // it is published again
   if (outlet.latched)
     client->outbox.send(message_data(item.id, outlet.latched->first, outlet.latched->second));
   return {};

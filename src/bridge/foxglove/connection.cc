@@ -184,7 +184,7 @@ void Connection::close(websocket::close_code code, std::string_view reason) {
   client_->outbox.close();
   websocket_->async_close({code, beast::string_view(reason.data(), reason.size())},
                           [self = shared_from_this()](error_code) { self->last_moment_.cancel(); });
-  // A client that does not read cannot be told: then the socket just goes.
+  // A client that does not read cannot be notified: the socket is simply closed.
   last_moment_.expires_after(kCloseTimeout);
   last_moment_.async_wait([self = shared_from_this()](error_code error) {
     if (!error) beast::get_lowest_layer(*self->websocket_).close();

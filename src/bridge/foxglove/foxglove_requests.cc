@@ -12,7 +12,7 @@ constexpr const char* kNoControl =
     "the token";
 constexpr const char* kBusy = "the simulation is busy; the request was not executed";
 
-/// Whether a message only asks to be told something.
+/// Whether a message only requests information.
 bool only_watches(const ClientMessage& message) {
   return std::holds_alternative<SubscribeMessage>(message) ||
          std::holds_alternative<UnsubscribeMessage>(message) ||

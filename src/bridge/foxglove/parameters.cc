@@ -119,7 +119,7 @@ void Parameters::set(const ClientPtr& client, const SetParametersMessage& messag
       refuse_request(client, counters_, "'" + parameter.name + "' " + status.error().to_string());
     if (!parameters_.contains(parameter.name)) continue;
     json item = value_of(parameter.name);
-    // A Command applies at the next step: until then the value that it brings is told.
+    // A Command applies at the next step: until then the requested value is reported.
     if (status.ok()) item["value"] = parameter.value;
     values.push_back(std::move(item));
   }

@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kFreeJoint = 0, kPlane = 0;  // mjtJoint, mjtGeom
 
-/// Arrays of the model that tell what moves.
+/// Arrays of the model that determine the moving bodies.
 struct BodyFacts {
   std::vector<double> joints, first_joint, mocap, joint_type;
 

@@ -65,7 +65,7 @@ void add_to_scene(SceneEntity entity, const std::string& name, Scene* scene) {
   if (auto* prop = std::get_if<PropOptions>(&entity)) scene->props.push_back(std::move(*prop));
 }
 
-// Cause of a compile's failure, by what its message says: MuJoCo and Gloam tell of files alike.
+// Cause of a failed compile, from its message: MuJoCo and Gloam report missing files alike.
 SpawnFailure cause_of(const Error& error) {
   const auto says = [&](std::initializer_list<const char*> words) {
     return std::ranges::any_of(

@@ -1,4 +1,4 @@
-// Operator: what clients may spawn.
+// Operator: models that clients may spawn.
 
 #include <algorithm>
 #include <filesystem>

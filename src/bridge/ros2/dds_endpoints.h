@@ -28,7 +28,7 @@ struct ReaderEvents {
   std::function<void(const DdsSample&)> on_sample;
 };
 
-/// Errors: DDS refuses it.
+/// Errors: DDS rejects it.
 Result<std::unique_ptr<DdsWriter>> open_writer(dds::Publisher& publisher, dds::Topic& topic,
                                                const DdsEndpoint& endpoint, WriterEvents events);
 Result<std::unique_ptr<DdsReader>> open_reader(dds::Subscriber& subscriber, dds::Topic& topic,

@@ -1,4 +1,4 @@
-// The bridge to ROS 2: one node with the topics that the simulation says and hears, and services.
+// The bridge to ROS 2: one node with the output and input topics of the simulation, and services.
 
 #include <charconv>
 #include <chrono>

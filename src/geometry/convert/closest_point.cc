@@ -23,8 +23,8 @@ double squared_distance_to_edge(Vec3d p, Vec3d a, Vec3d b) {
   return length_squared(p - a - ab * t);
 }
 
-// Does the ray upwards from p, leaning a little lest it runs along faces, cross the triangle?
-// Möller and Trumbore 1997.
+// Does the ray upwards from p, tilted slightly so that it does not run along faces, cross the
+// triangle? Möller and Trumbore 1997.
 constexpr Vec3d kRayDirection{0.0271828, 0.0314159, 1};
 bool is_below(Vec3d p, const Triangle3d& t) {
   const Vec3d ab = t[1] - t[0], ac = t[2] - t[0];

@@ -19,7 +19,7 @@ namespace gloam {
 namespace {
 
 constexpr double kShapeTolerance = 0.01;  // distance of surfaces that count as one, of the size
-constexpr double kFlatThickness = 1e-4;   // thickness of what is flat, of the longest side
+constexpr double kFlatThickness = 1e-4;   // thickness of a flat mesh, of the longest side
 constexpr double kPlateThickness = 1e-3;  // thickness that it gets, of the longest side
 constexpr double kHullTolerance = 1e-5;   // gap of the hull of the mesh, over the diagonal
 constexpr double kColliderHullTolerance = 1e-3;  // gap of a hull, over the longest side
@@ -41,8 +41,8 @@ double diagonal(const TriangleMesh& mesh) {
   return length(high - low);
 }
 
-// Joins vertices closer than a millionth of the mesh's size. They are sorted along a line: those of
-// one place are near each other in the list. It leans, lest all of a grid's row are at one place.
+// Joins vertices closer than a millionth of the mesh's size. They are sorted along a line, so that
+// neighbours are close in the list. The line is oblique, so that the rows of a grid stay apart.
 TriangleMesh without_seams(TriangleMesh mesh) {
   const std::vector<Vec3f>& p = mesh.positions;
   const auto near = static_cast<float>(kWeldTolerance * diagonal(mesh));

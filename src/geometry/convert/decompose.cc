@@ -29,7 +29,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kLibrary = "lib_coacd.so";
-// "GLOMHL03": changes with the layout and what is asked of CoACD.
+// "GLOMHL03": changes with the layout and the parameters of CoACD.
 constexpr uint64_t kHullsMagic = 0x33304C48'4D4F4C47ull;
 
 // As the cache keeps it: an archive of whole meshes, with normals and more, is model_file_cache's.
@@ -175,7 +175,7 @@ void store_hulls(const fs::path& entry, const std::vector<TriangleMesh>& hulls) 
   keep_in_cache(entry, out.bytes);
 }
 
-/// One decomposition. It shares nothing with whoever waits for it but this.
+/// One decomposition; the only data that it shares with the waiting thread.
 struct Job {
   CoacdApi api;
   TriangleMesh mesh;

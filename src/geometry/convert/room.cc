@@ -49,7 +49,7 @@ Plane2 axes_of(Vec3d normal) {
 
 /// Triangles that are one face.
 struct Piece {
-  std::vector<Vec3d> points;      // its corners, and what is farthest from its plane
+  std::vector<Vec3d> points;      // its corners, and the points farthest from its plane
   Vec3d area;                     // sum of the triangles' [m^2]
   std::vector<size_t> triangles;  // empty = it is part of another
 };

@@ -151,7 +151,7 @@ bool read_head(GltfDocument* document, const JsonNode& node, size_t out_size, Ac
   return document->errors().ok();
 }
 
-// Calls put(element, bytes) for what a sparse accessor replaces.
+// Calls put(element, bytes) for each element that a sparse accessor replaces.
 template <class F>
 void read_sparse(GltfDocument* document, const JsonNode& node, const AccessorHead& head,
                  const F& put) {

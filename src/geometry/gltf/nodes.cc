@@ -139,7 +139,7 @@ class NodeReader {
     };
     if (!read("TRANSLATION", 3, &shift) || !read("ROTATION", 4, &turn) || !read("SCALE", 3, &scale))
       return false;
-    if (count == SIZE_MAX) return true;  // nothing is said: the mesh itself
+    if (count == SIZE_MAX) return true;  // no attributes: the mesh itself
     if (count > document_->source().options->limits.instances) {
       attributes.fail(fmt::format("has {} instances, which exceeds the limit", count));
       return false;

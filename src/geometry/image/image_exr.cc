@@ -67,7 +67,7 @@ struct ExrHeader {
   size_t row_bytes = 0;
 };
 
-/// "" or what is wrong.
+/// "" or the fault.
 std::string read_channels(Cursor cursor, ExrHeader* header) {
   for (;;) {
     const std::string name = cursor.text();

@@ -18,7 +18,7 @@ struct HdrHeader {
   float exposure = 1;
 };
 
-// "" or what is wrong. Takes the head off `bytes`.
+// "" or the fault. Removes the header from `bytes`.
 std::string read_hdr_header(std::span<const uint8_t>* bytes, HdrHeader* out) {
   std::string_view text = as_text(bytes->first(std::min(bytes->size(), kMaxHeader)));
   const size_t all = text.size();

@@ -139,7 +139,7 @@ void ProgressCount::add(uint64_t done) {
   if (!report_ || total_ == 0) return;
   std::unique_lock lock(mutex_, std::defer_lock);
   if (now >= total_)
-    lock.lock();  // the end is always told
+    lock.lock();  // the end is always reported
   else if (!lock.try_lock())
     return;
   const double share = std::min(1.0, static_cast<double>(now) / static_cast<double>(total_));

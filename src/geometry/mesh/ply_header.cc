@@ -26,7 +26,7 @@ std::optional<PlyType> type_of(std::string_view name) {
   return {};
 }
 
-// "" or what is wrong with a line of the head.
+// "" or the fault of a line of the header.
 std::string read_line(std::string_view line, bool* has_format, PlyHeader* out) {
   const std::string_view word = take_word(&line);
   if (word == "format") {

@@ -1,5 +1,5 @@
 // PLY, text and binary of both byte orders: positions, normals, texture coordinates, colours and
-// polygons. What programs add of their own is left out.
+// polygons. Elements and properties of other programs are ignored.
 
 #include <fmt/format.h>
 

@@ -41,7 +41,7 @@ void scan_packet(const ScanJob& job, const LidarBeam* beams, int count, LidarRet
   for (int k = 0; k < rays; ++k) {
     const Vec3Of<FloatLanes> d =
         rays > 1 ? footprint_direction(optics, d_L, job.footprint[static_cast<size_t>(k)]) : d_L;
-    // Media hardly vary within a footprint: one ray tells what comes back from them.
+    // Media hardly vary within a footprint: one ray measures their backscatter.
     trace_echoes(job.scene, job.tracer, optics, beam_ray(job.motions, d, time), active,
                  1.0f / static_cast<float>(rays), echoes, job.has_media && k == 0 ? soft : nullptr);
   }

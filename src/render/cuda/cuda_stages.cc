@@ -14,7 +14,7 @@ namespace {
 
 using cuda::check;
 
-/// Samples of a pixel in one launch: between launches progress is told. A fixed number, so that
+/// Samples of a pixel in one launch: progress is reported between launches. A fixed number, so that
 /// pictures do not depend on whether somebody asks.
 constexpr int kSamplesOfLaunch = 64;
 

@@ -13,7 +13,7 @@ namespace {
 /// faster where no lanes share the test.
 constexpr size_t kMaxUnboundedSolids = 12;
 constexpr float kLeastArea = 0.125f;
-/// A tree over instances is made anew when moving them has made it so much worse.
+/// A tree over instances is rebuilt when moving them has made it worse by this factor.
 constexpr float kRebuildRatio = 1.3f;
 
 /// Boxes of the triangles, over the shutter.

@@ -97,7 +97,7 @@ std::vector<uint8_t> near_jumps(const std::vector<float>& disparity, int width, 
   return spread;
 }
 
-/// Marks what the second eye does not see in one row: behind something nearer, or off its picture.
+/// Marks pixels of one row that the second eye does not see: occluded, or outside of its image.
 void mark_occluded(const float* disparity, int width, double side, uint8_t* hidden) {
   // The second eye sees pixel u at u - side d. Towards it (from the far side of the row), places
   // fall; a point whose place was passed already is covered.

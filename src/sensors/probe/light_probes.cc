@@ -1,4 +1,4 @@
-// Probes of light at a place, and of what a camera makes of it.
+// Probes of light at a place, and of the exposure of a camera.
 
 #include <algorithm>
 #include <cmath>

@@ -236,7 +236,7 @@ void Agents::take_over(const EffectContext& at, Effect* other) {
     agent.motion = found->motion;
     agent.walker = found->walker;
     agent.vehicle = found->vehicle;
-    // The goal and the path may no longer exist: both are found anew.
+    // The goal and the path may no longer exist: both are searched again.
     agent.motion.has_goal = 0;
     agent.path.reset(nav_->mesh_of(row).nearest(agent.motion.p, 1.5, 1));
     agent.after = found->after;

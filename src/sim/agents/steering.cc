@@ -54,7 +54,7 @@ double corner_speed(const AgentBody& agent, std::span<const Vec3d> corners) {
 
 }  // namespace
 
-// The velocity that it would have if it were alone, then that which it takes.
+// The velocity that it would have if it were alone, then the velocity that it takes.
 Vec3d Agents::steer(size_t row, const mjData& data) {
   AgentBody& agent = agents_[row];
   AgentMotion& m = agent.motion;
@@ -83,7 +83,7 @@ Vec3d Agents::steer(size_t row, const mjData& data) {
   }
   if (!d.yields) return wanted;
   if (doors_->is_blocked(data, m)) return {};
-  // Whoever is touched stops for a second.
+  // An agent that is touched stops for a second.
   if (time_of(decisions_.step_of(decision_)) - m.touched < 1) return {};
   if (intent.mode != AgentIntent::Mode::kSpline) avoid(row, &wanted);
   if (drives) return shortened(wanted, free_speed(row));

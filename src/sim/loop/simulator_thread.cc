@@ -1,4 +1,4 @@
-// The threads of a Simulator: its own, and those of callers that take its place for a moment.
+// The threads of a Simulator: its own, and callers' threads that take its place for a moment.
 
 #include <optional>
 

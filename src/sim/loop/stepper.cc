@@ -177,7 +177,7 @@ bool Stepper::reset() {
 }
 
 // Sensors and the warm start of the solver are computed by a forward pass. The sensors are wanted,
-// but a bare mj_step loop starts cold, so the state is made anew after it.
+// but a bare mj_step loop starts cold, so the state is restored after it.
 bool Stepper::restart() {
   const mjModel* model = &model_;
   mjData* data = data_.get();
@@ -371,7 +371,7 @@ void Stepper::restore_last_good_state() {
 }
 
 // Makes mjData that of state_, with the sensors of this very instant, and with poses for the
-// controllers and hooks of the next step. False when MuJoCo refuses.
+// controllers and hooks of the next step. False when MuJoCo fails.
 bool Stepper::stand_at_state() {
   snapshot_ = {};
   own_sensors_ = true;

@@ -75,7 +75,7 @@ srv::SpawnEntities_Response spawn_all(Operator& op, const srv::SpawnEntities_Req
   return response;
 }
 
-// Sources that cannot be listed are told of, and hinder nothing.
+// Sources that cannot be listed are reported and skipped.
 std::vector<Spawnable> list_spawnables(const Operator& op, const std::vector<std::string>& sources,
                                        si::Result* result) {
   std::vector<Spawnable> all;

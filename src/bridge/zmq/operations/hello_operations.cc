@@ -1,4 +1,4 @@
-// hello: what a server is and can do; topics and definitions of messages.
+// hello: identity and capabilities of a server; topics and message definitions.
 
 #include <algorithm>
 #include <set>
@@ -115,7 +115,7 @@ void pack_server(const Call& call, Packer& out) {
 }
 constexpr uint32_t kServerPairs = 6;
 
-// Without a token: what a client needs to know to get one.
+// Without a token: the information that a client needs to get one.
 Status hello(const Call& call, Packer& out) {
   out.pack_map(kServerPairs + 1);
   pack_server(call, out);

@@ -1,5 +1,5 @@
 #pragma once
-// Rays that find out what static geometry lets through.
+// Rays that measure the transmission through static geometry.
 
 #include "render/cpu/tracer/embree_scene.h"
 #include "render/kernel/surface/surface.h"

@@ -1,4 +1,4 @@
-// Splashes, and what drips from edges.
+// Splashes, and drips from edges.
 
 #include <algorithm>
 

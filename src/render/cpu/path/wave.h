@@ -39,7 +39,7 @@ struct Wave {
   }
 
  private:
-  /// Paths between a request to the memory for what a hit needs and its use.
+  /// Paths between the prefetch of the data of a hit and its use.
   static constexpr int kPrefetchDistance = 4;
 
   bool needs_surface(int k) const { return found[k] && !states[k].any; }

@@ -9,8 +9,8 @@
 
 namespace gloam {
 
-/// Gathers what media send back along one beam, in bins of range as deep as the receiver resolves,
-/// and finds false returns in it. A bin's signal is
+/// Gathers the backscatter of media along one beam, in bins of range as deep as the receiver
+/// resolves, and finds false returns in it. A bin's signal is
 ///   pi Int beta T² O(r) / r² dr
 /// with the volume backscattering coefficient beta [1/(m sr)]. A run of bins above the threshold is
 /// one echo, at its peak. Speckle is left out, as it is of surfaces: its grains at the lens are

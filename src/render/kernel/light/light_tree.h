@@ -1,5 +1,5 @@
 #pragma once
-// Taking one of many lights in proportion to a bound of what it brings to a point: from the root
+// Selects one of many lights in proportion to a bound of its contribution at a point: from the root
 // down, at each node by the bounds of its two children. Conty Estevez & Kulla 2018, "Importance
 // sampling of many lights with adaptive tree splitting" (the bounds of place and direction). Theirs
 // weighs a cluster by its centre's distance alone; a receiver among the lamps of a long corridor

@@ -19,7 +19,7 @@ inline constexpr float kGlowProbability = 0.5f, kGlowAmongLamps = 1.0f / kSample
 
 // Reflections.
 
-/// Roughness above which a surface reflects the cache's light instead of what a ray finds; 0 to 1.
+/// Roughness above which a surface reflects the cache's light instead of tracing a ray; 0 to 1.
 /// Its lobe is so wide that light from all directions alike will do.
 inline constexpr float kMaxTracedRoughness = 0.6f;
 /// Roughness from which one pixel of two by two traces a reflection ray for all; 0 to 1. The
@@ -94,7 +94,7 @@ inline constexpr int kMaxCellRays = 10 * kRays;
 inline constexpr uint32_t kRoundsPerPointSet = 16;
 /// Factor by which the memory of a cell shrinks that sees moving things in all directions; >= 1.
 inline constexpr float kMotionMemoryDivisor = 40;
-/// Fraction of what a cell saw move that is still counted an update later; 0 to 1.
+/// Fraction of the motion seen by a cell that is still counted one update later; 0 to 1.
 inline constexpr float kMotionDecay = 0.75f;
 /// Updates after which a cell that nothing asks for is dropped.
 inline constexpr uint32_t kCellLifetime = 30;
@@ -180,7 +180,7 @@ inline constexpr float kLeastPixels = 8;
 /// Standard errors that a change may be by chance; points that are spread over patches make it less
 /// than it seems.
 inline constexpr float kGainSigma = 1;
-/// Gain, at most: what was dark before tells little.
+/// Largest gain: places that were dark before are a poor reference.
 inline constexpr float kMostGain = 4;
 /// Way of a lamp [m] and turn of its direction [rad] from picture to picture, and its strength over
 /// the strongest lamp's, below which the cache follows it.

@@ -16,7 +16,7 @@ constexpr Rational kForceUpdateRate{50, 1};  // [Hz]
 // Share of its velocity through the air that drag may take from a body in a step: with more what is
 // very light would swing.
 constexpr double kMostPerStep = 0.25;
-constexpr double kLeastMass = 1e-9;  // [kg]: MuJoCo's model leaves out what has none, too
+constexpr double kLeastMass = 1e-9;  // [kg]: MuJoCo's model ignores bodies without mass, too
 
 // Cell of a gas that holds a point or is the nearest to it.
 size_t nearest_cell(const GasDescription& gas, const double* p) {

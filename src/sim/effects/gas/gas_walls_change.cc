@@ -1,4 +1,5 @@
-// Walls that move: what they cover is pushed aside, what they leave is filled from around it.
+// Moving walls: air in covered cells is pushed aside, freed cells are filled from their
+// surroundings.
 
 #include <algorithm>
 

@@ -7,7 +7,7 @@ namespace {
 
 constexpr int kSmallValues = 50'000;  ///< floats that a block has room for: 200 of 227 KiB
 
-/// Writes down what a cycle does.
+/// Records the steps of a cycle.
 struct Recorder {
   std::vector<CycleWork>* works;
   void add(CycleStep step, int level) { works->push_back({step, uint8_t(level), 0}); }
