@@ -66,7 +66,7 @@ TEST_F(OperatorTest, StepsTellHowFarTheyAreAndCanBeStopped) {
   EXPECT_EQ(last, 500);
   EXPECT_EQ(simulation_->latest().step(), 500);
   expect_error(op().step(1'000'000, [](int64_t done, int64_t) { return done < 10; }),
-               ErrorKind::kInterrupted, "stopped");
+               ErrorKind::kInterrupted, "cancelled before all steps");
   EXPECT_LT(simulation_->latest().step(), 100'000);
   std::thread stepper([this] { (void)op().step(1'000'000'000); });
   while (simulation_->latest().step() < 2000) std::this_thread::yield();

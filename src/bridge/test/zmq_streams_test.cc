@@ -149,7 +149,7 @@ TEST_F(ZmqBridgeTest, SharedMemoryMayBeOff) {
   subscriber.subscribe("shm/front/image_raw");
   const auto message = subscriber.receive();
   ASSERT_TRUE(message);
-  EXPECT_THAT(message->header["error"]["message"].text(), HasSubstr("off"));
+  EXPECT_THAT(message->header["error"]["message"].text(), HasSubstr("disabled"));
 }
 
 }  // namespace

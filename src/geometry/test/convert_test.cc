@@ -417,7 +417,7 @@ TEST(Convert, RefusesWhatIsTooFarAway) {
   for (Vec3f& p : mesh.positions) p = p * 1e20f;
   const Result<Converted> made = convert_mesh(mesh, {});
   ASSERT_FALSE(made.ok());
-  EXPECT_THAT(made.error().message, HasSubstr("1e+20 m away"));
+  EXPECT_THAT(made.error().message, HasSubstr("1e+20 m from its origin"));
   EXPECT_THAT(made.error().hint, HasSubstr("'unit'"));
 }
 
