@@ -21,7 +21,7 @@ class Pace(ProgramTest):
         self.assertAlmostEqual(camera["achieved_hz"], 20, places=6)
         self.assertLess(report["realtime_factor"], 1.1)
         table = self.gloam("run", self.model, *SMALL, "--output", "png", "--out", "again").stdout
-        self.assertRegex(table, r"(?m)^  stream +wanted Hz +achieved Hz .*waiting$")
+        self.assertRegex(table, r"(?m)^  stream +target Hz +achieved Hz .*waiting$")
         self.assertRegex(table, r"(?m)^  camera 'side' +20 +20\.00 +5 +0 ")
 
     def test_states_do_not_depend_on_the_pace(self):
