@@ -25,8 +25,10 @@
 #endif
 #include <fastdds/dds/topic/TopicDataType.hpp>
 
+#include <chrono>
 #include <functional>
 #include <string>
+#include <thread>
 
 namespace gloam::bridge {
 
@@ -42,6 +44,14 @@ inline bool succeeded(eprosima::fastrtps::types::ReturnCode_t code) {
   return code == eprosima::fastrtps::types::ReturnCode_t::RETCODE_OK;
 }
 #endif
+
+/// Whether large messages are paced by a flow controller of DDS. Version 3 then sends its own
+/// announcements by that thread, too, and an assertion ends the program when two participants
+/// appear before it has sent the first one (StatelessWriter::unsent_changes_reset()), so there the
+/// transport paces them.
+inline constexpr bool kUsesFlowController = GLOAM_FAST_DDS < 3;
+constexpr uint32_t kPacedSize = 60'000;          // of messages: fragments have 65,500 [byte]
+constexpr std::chrono::milliseconds kPacing{1};  // after each of them
 
 /// A type without key whose messages derived classes copy to and from DDS's payloads.
 class DdsType : public dds::TopicDataType {
@@ -130,7 +140,9 @@ class ForwardingTransport : public transport::ChainingTransport {
   bool send(rtps::SenderResource* sender, Bytes bytes, uint32_t size, rtps::LocatorsIterator* begin,
             rtps::LocatorsIterator* end,
             const std::chrono::steady_clock::time_point& timeout) override {
-    return sender->send(bytes, size, begin, end, timeout);
+    const bool is_sent = sender->send(bytes, size, begin, end, timeout);
+    if (!kUsesFlowController && size >= kPacedSize) std::this_thread::sleep_for(kPacing);
+    return is_sent;
   }
   void receive(transport::TransportReceiverInterface* next, const rtps::octet* bytes, uint32_t size,
                const rtps::Locator_t& local, const rtps::Locator_t& remote) override {
@@ -139,7 +151,7 @@ class ForwardingTransport : public transport::ChainingTransport {
 
  private:
   /// Where a peer that announces this address is reached.
-  virtual rtps::Locator_t changed(const rtps::Locator_t& remote) const = 0;
+  virtual rtps::Locator_t changed(const rtps::Locator_t& remote) const { return remote; }
 };
 
 }  // namespace gloam::bridge

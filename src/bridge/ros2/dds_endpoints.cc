@@ -60,7 +60,7 @@ class RawWriter final : public DdsWriter, private dds::DataWriterListener {
     qos.publish_mode().kind = dds::SYNCHRONOUS_PUBLISH_MODE;
     if (endpoint.is_large) {
       qos.publish_mode().kind = dds::ASYNCHRONOUS_PUBLISH_MODE;
-      qos.publish_mode().flow_controller_name = kLargeMessageFlow;
+      if (kUsesFlowController) qos.publish_mode().flow_controller_name = kLargeMessageFlow;
     }
     publisher_ = &publisher;
     writer_ = publisher.create_datawriter(&topic, qos, this);

@@ -50,7 +50,7 @@ dds::DomainParticipantQos participant_qos(const DdsNodeOptions& options) {
   // No shared memory: of Fast DDS 2.9 a reader that is killed leaves its port locked for all, and
   // Fast DDS 3 does not know 2.9's names.
   if (options.network)
-    qos.transport().user_transports = {std::make_shared<transport::UDPv4TransportDescriptor>()};
+    qos.transport().user_transports = {std::make_shared<NetworkTransportDescriptor>()};
   else
     qos.transport().user_transports = {std::make_shared<LoopbackTransportDescriptor>()};
   // A picture sent at once would overflow its reader's socket, which holds 212,992 bytes by
@@ -60,7 +60,7 @@ dds::DomainParticipantQos participant_qos(const DdsNodeOptions& options) {
   pace->scheduler = transport::FlowControllerSchedulerPolicy::FIFO;
   pace->max_bytes_per_period = kBytesPerPeriod;
   pace->period_ms = kPeriod;
-  qos.flow_controllers().push_back(pace);
+  if (kUsesFlowController) qos.flow_controllers().push_back(pace);
   // Who is on this machine is asked one by one: multicast may not pass loopback.
   auto& peers = qos.wire_protocol().builtin.initialPeersList;
   peers.push_back(udp_locator("239.255.0.1", discovery_port(options.domain)));

@@ -56,4 +56,11 @@ transport::TransportInterface* LoopbackTransportDescriptor::create_transport() c
   return new LoopbackTransport(*this);
 }
 
+NetworkTransportDescriptor::NetworkTransportDescriptor()
+    : ChainingTransportDescriptor(std::make_shared<transport::UDPv4TransportDescriptor>()) {}
+
+transport::TransportInterface* NetworkTransportDescriptor::create_transport() const {
+  return new ForwardingTransport(*this);
+}
+
 }  // namespace gloam::bridge

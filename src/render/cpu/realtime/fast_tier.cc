@@ -37,8 +37,8 @@ float cell_edge(const CameraView32& camera) {
 }  // namespace
 
 bool FastHistory::find_moving_lamps(const SceneView& scene) {
-  // Lamps that move less far from picture to picture, or give less than kMinLampStrength of the strongest
-  // lamp's light, are left to the cache, which follows them.
+  // Lamps that move less far from picture to picture, or give less than kMinLampStrength of the
+  // strongest lamp's light, are left to the cache, which follows them.
   std::vector<LampPlace> now;
   float strongest = 0;
   for (uint32_t i = 0; i < scene.lights.size; ++i) {
