@@ -69,7 +69,7 @@ class Distributions(unittest.TestCase):
     def test_set_up_prints_the_release_and_the_action(self):
         for name, system, action in [
             ("debian-12", "Debian GNU/Linux 12 (bookworm)", "tested here"),
-            ("debian-13", "Debian GNU/Linux 13 (trixie)", "a complete test is still pending"),
+            ("debian-13", "Debian GNU/Linux 13 (trixie)", "supported, tested in a chroot"),
             ("ubuntu-24.04", "Ubuntu 24.04.1 LTS", "not tested here"),
             ("debian testing", "Debian GNU/Linux forky/sid", "trying the package names of Debian 13"),
             ("none", "unknown", "trying the package names of Debian 13"),
