@@ -23,7 +23,7 @@ script_help() {
   printf '%s\n\n' "Gloam: a robotics simulator with unmodified MuJoCo physics and path-traced sensors."
   sed -n '2,/^set -/p' "$root/gloam" | sed -n 's/^# \{0,1\}//p'
   printf '\nCommands of the program:\n'
-  calls add_subcommand "$root"/apps/commands/*.cc | awk -F'\t' '{ printf "  %-12s %s\n", $1, $2 }'
+  calls "app\.add_subcommand" "$root"/apps/commands/*.cc | awk -F'\t' '{ printf "  %-12s %s\n", $1, $2 }'
   printf '\n%s\n' "The program is not built yet. After './gloam setup' (several minutes), './gloam COMMAND --help' lists every option."
 }
 
@@ -31,7 +31,7 @@ command_help() {  # command_help COMMAND: of the program, as its source has it
   local file=$root/apps/commands/$1.cc
   [ -f "$file" ] || { script_help; return; }
   printf 'Usage: ./gloam %s [OPTION…] …\n\n' "$1"
-  calls add_subcommand "$file" | cut -f2
+  calls "app\.add_subcommand" "$file" | cut -f2
   printf '\n'
   calls 'add_(option|flag)' "$file" | awk -F'\t' '{ printf "  %-20s %s\n", $1, $2 }'
   printf '\n%s\n' "The program is not built yet. After './gloam setup', this help lists every option."

@@ -147,7 +147,7 @@ void add_run(CLI::App& app, Globals& globals, Action& action) {
   sub->add_flag("--mcap", command->mcap, "Also write a log: run.mcap in the results folder");
   sub->add_flag("--overwrite", command->overwrite, "Replace an existing results folder");
   sub->add_flag("--realtime", command->realtime,
-                "Short for --pace realtime; default: as fast as possible");
+                "Short for --pace realtime; default without a live view: as fast as possible");
   command->live.add_to(*sub);
   sub->add_option("--at", command->at,
                   "Resume the log FILE at this time in seconds, for --duration more seconds")

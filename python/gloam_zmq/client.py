@@ -111,7 +111,7 @@ class Client:
         return self.call("topics")
 
     def ping(self):
-        """Seconds that an answer takes; what else goes on does not delay it."""
+        """Seconds that an answer takes; other operations do not delay it."""
         begin = time.monotonic()
         self.call("ping")
         return time.monotonic() - begin
@@ -150,7 +150,7 @@ class Client:
         return self.call("checkpoint")["id"]
 
     def restore(self, checkpoint):
-        """Goes on from a checkpoint; returns the state there."""
+        """Restores a checkpoint and returns its state."""
         return self.call("restore", id=checkpoint)
 
     def seek(self, time):
@@ -195,7 +195,7 @@ class Client:
         self.call("claim", **_given(robot=robot))
 
     def release(self, robot=None):
-        """Gives a claimed robot back."""
+        """Releases a claimed robot."""
         self.call("release", **_given(robot=robot))
 
     def publish(self, topic, data):
@@ -224,7 +224,7 @@ class Client:
         return self.call("entity_state", name=name)
 
     def set_entity_state(self, name, **change):
-        """position (3), orientation (4), velocity (3), angular_velocity (3), world axes; what is not given stays."""
+        """position (3), orientation (4), velocity (3), angular_velocity (3), world axes; omitted values are kept."""
         self.call("set_entity_state", name=name, **change)
 
     def spawn(self, uri=None, text=None, name=None, position=None, orientation=None, **more):
@@ -237,7 +237,7 @@ class Client:
         self.call("remove", name=name)
 
     def recompile(self, toml):
-        """Goes on in another scene, given as text; what has the same name keeps its state."""
+        """Continues in another scene, given as text; elements with the same name keep their state."""
         self.call("recompile", toml=toml)
 
     def load_world(self, uri=None, text=None):

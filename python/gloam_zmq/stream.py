@@ -28,7 +28,7 @@ class Message:
 
     @property
     def is_valid(self):
-        """False once the server has overwritten a message in shared memory: check after reading, copy what is to be kept."""
+        """False once the server has overwritten a message in shared memory: check after reading, and copy data that you keep."""
         if self._slot is None:
             return True
         ring, slot, sequence = self._slot
