@@ -57,8 +57,8 @@ def walk(program, folder):
     """Five seconds of the demo."""
     log = folder / "walk.mcap"
     record(program, "demo", 5, log)
-    first = images(program, log, (480, 300), 10, 32)[0]
-    ffmpeg("-framerate", 10, "-i", first.with_name("%06d.png"), "-vf", PALETTE, "-loop", 0, IMAGES / "walk.gif")
+    first = images(program, log, (400, 250), 8, 16)[0]
+    ffmpeg("-framerate", 8, "-i", first.with_name("%06d.png"), "-vf", PALETTE, "-loop", 0, IMAGES / "walk.gif")
 
 
 def main():
