@@ -209,6 +209,17 @@ def test_metrics_topics_and_inputs(tmp_path: Path) -> None:
             sim.publish("/dog/cmd_vell", {})
 
 
+def assert_freed(gone: weakref.ref[gloam.Simulation]) -> None:
+    """Waits: the callback of the last sample may still run."""
+    end = time.monotonic() + 10
+    while gone() is not None and time.monotonic() < end:
+        gc.collect()
+        time.sleep(0.01)
+    if gone() is not None:
+        faulthandler.dump_traceback(all_threads=True)
+    assert gone() is None, [type(holder) for holder in gc.get_referrers(gone())]
+
+
 def test_a_simulation_that_nobody_holds_is_freed(sim: gloam.Simulation) -> None:
     made = gloam.load(QUADRUPED)
     sensor = made.sensors[made.world.sensors[0]]
@@ -217,13 +228,7 @@ def test_a_simulation_that_nobody_holds_is_freed(sim: gloam.Simulation) -> None:
     made.step(2)
     gone = weakref.ref(made)
     del made, sensor
-    end = time.monotonic() + 10
-    while gone() is not None and time.monotonic() < end:  # the callback of the last sample may still run
-        gc.collect()
-        time.sleep(0.01)
-    if gone() is not None:
-        faulthandler.dump_traceback(all_threads=True)
-    assert gone() is None, [type(holder) for holder in gc.get_referrers(gone())]
+    assert_freed(gone)
 
 
 def test_an_exception_of_a_callback_does_not_keep_a_simulation() -> None:
@@ -241,8 +246,4 @@ def test_an_exception_of_a_callback_does_not_keep_a_simulation() -> None:
     gone = weakref.ref(made)
     del made, callback
     stepped.set()
-    end = time.monotonic() + 10
-    while gone() is not None and time.monotonic() < end:
-        gc.collect()
-        time.sleep(0.01)
-    assert gone() is None, [type(holder) for holder in gc.get_referrers(gone())]
+    assert_freed(gone)

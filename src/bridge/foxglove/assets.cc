@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <fstream>
 
+#include "bridge/operations/model_source.h"
 #include "gloam/scene.h"
 
 namespace gloam::bridge::foxglove {
@@ -60,10 +60,7 @@ fs::path find_mesh(const std::string& uri, const fs::path& model, const FileAcce
   // A link or ".." may not lead out of the package, and secrets are no meshes.
   const bool is_inside =
       std::mismatch(folder.begin(), folder.end(), file.begin(), file.end()).first == folder.end();
-  std::string extension = file.extension().string();
-  std::ranges::transform(extension, extension.begin(),
-                         [](unsigned char c) { return std::tolower(c); });
-  const bool is_mesh = std::ranges::count(kMeshExtensions, extension) > 0;
+  const bool is_mesh = std::ranges::count(kMeshExtensions, lower_extension_of(file)) > 0;
   return is_inside && is_mesh ? file : fs::path();
 }
 

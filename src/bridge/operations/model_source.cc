@@ -27,12 +27,6 @@ Error refuse(SpawnFailure* failure, SpawnFailure cause, std::string message,
   return Error{ErrorKind::kInput, std::move(message), {}, std::move(hint)};
 }
 
-std::string lower_extension_of(const fs::path& path) {
-  std::string extension = path.extension().string();
-  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return extension;
-}
-
 // "%20" as a blank; what is no such code stays.
 std::string percent_decoded(std::string_view text) {
   std::string out;
@@ -118,6 +112,12 @@ Status check_as_scene_would(const fs::path& file, const Scene& scene) {
 }
 
 }  // namespace
+
+std::string lower_extension_of(const fs::path& path) {
+  std::string extension = path.extension().string();
+  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return extension;
+}
 
 std::string prop_kind_of(const std::string& uri) {
   return uri.starts_with(kPropFolder) ? uri.substr(kPropFolder.size()) : std::string();

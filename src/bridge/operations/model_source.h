@@ -14,6 +14,9 @@
 
 namespace gloam::bridge {
 
+/// The extension of a file, with its dot, in lower case.
+std::string lower_extension_of(const std::filesystem::path& path);
+
 /// One entity more in a Scene.
 using SceneEntity = std::variant<RobotOptions, ObjectOptions, PropOptions>;
 

@@ -63,7 +63,7 @@ Status LogRecorder::begin(std::unique_ptr<LogQueue> queue, const std::vector<Top
   inputs_ = std::make_unique<InputLog>(
       std::move(inputs),
       [this](const TopicInfo& topic, double time, int64_t run, const MessageBytes& data) {
-        // Of the many inputs a log has those that were used.
+        // A log contains only the input topics that received a message.
         static_cast<void>(channels_->add(topic));
         write(topic.name, time, run, data);
       });

@@ -20,7 +20,7 @@ Status WorldLog::write(const CompiledWorld& world, const WorldStart& start, uint
   return request_.embed ? embed(run) : Status();
 }
 
-// What a World before has brought into the log is not written again.
+// Files that an earlier World has already embedded are not written again.
 Status WorldLog::embed(const DescribedRun& run) {
   for (size_t i = 0; i < run.files.size(); ++i) {
     McapAttachment attachment;

@@ -19,7 +19,7 @@ struct WorldStart {
 
 class WorldLog {
  public:
-  /// What it is given outlives it.
+  /// The arguments must outlive this object.
   WorldLog(const LogRequest& request, LogChannels& channels, LiveSimulation& simulation)
       : request_(request), channels_(channels), simulation_(simulation) {}
 

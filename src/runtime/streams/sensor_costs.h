@@ -31,7 +31,7 @@ class SensorAccount {
   double last_ = 0, span_ = 0;       // of simulation time: the last message, first to last [s]
 };
 
-/// Those of a simulation. Any thread.
+/// The accounts of all sensors of a simulation. Any thread.
 class SensorCosts {
  public:
   /// `rate`: messages that are asked for [Hz of simulation time].

@@ -29,7 +29,7 @@ class TopicFeed final : public TopicStream {
   int64_t complete_at(int64_t) const override { return -1; }
   void flush() override;
   Status status() const override;
-  /// Those that make its pictures; they live as long as this.
+  /// The cameras that render its images; they live as long as this feed.
   const std::vector<LiveCamera*>& cameras() const { return cameras_; }
 
  private:

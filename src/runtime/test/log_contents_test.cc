@@ -218,7 +218,7 @@ TEST_F(LogContents, MessagesThatWerePublishedAreLogged) {
   ASSERT_EQ(positions.size(), 1u);
   EXPECT_NEAR(positions[0].first, 0.01, 1e-9);
   EXPECT_THAT(positions[0].second.data, ElementsAre(0.1, 0.2));
-  // What they asked for, as it applied.
+  // The goals at the steps at which they applied.
   EXPECT_EQ(decoded<geometry_msgs::Twist>(all["/held/cmd_vel"])[0].second.linear.x, 0.5);
   const auto goals = decoded<sensor_msgs::JointState>(all["/held/joint_command"]);
   ASSERT_EQ(goals.size(), 2u);

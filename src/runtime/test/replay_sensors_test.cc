@@ -1,4 +1,4 @@
-// What a replay measures, and what of a scene changes nothing in it.
+// Sensors of a replay, and the settings of a scene that do not affect a replay.
 
 #include <gmock/gmock.h>
 #include <cstdio>

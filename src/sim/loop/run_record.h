@@ -14,7 +14,7 @@
 
 namespace gloam {
 
-/// What compiles to a World, and the sizes by which to tell whether it is the same one.
+/// The inputs from which a World is compiled again, and a hash by which to recognise it.
 struct WorldSource {
   Scene scene;
   std::string keyframe;
