@@ -39,7 +39,8 @@ class Tally:
     def __init__(self):
         self.passed, self.failed, self.skipped, self.broken = 0, 0, 0, []
 
-    def add(self, name, passed, failed, skipped, seconds, detail=""):
+    def add(self, name, passed, failed, skipped, seconds, detail="", broken=()):
+        """One line of the report; `broken` names the tests that failed, for the last lines, which survive where a long report is cut."""
         self.passed += passed
         self.failed += failed
         self.skipped += skipped
@@ -47,7 +48,7 @@ class Tally:
         counts = f"{passed} passed" + (f", {failed} failed" if failed else "") + (f", {skipped} skipped" if skipped else "")
         print(f"{mark} {name:<34} {counts:<34} {seconds:6.1f} s", flush=True)
         if failed:
-            self.broken.append(name)
+            self.broken += [f"{name}: {test}" for test in broken] or [name]
             if detail:
                 print(detail, flush=True)
 
@@ -68,6 +69,10 @@ def run(command, text_in="", timeout=None, **variables):
 
 def tail(text, lines=40):
     return "\n".join("    " + line for line in text.splitlines()[-lines:])
+
+
+def first_lines(text, lines=6):
+    return "\n    ".join(text.strip().splitlines()[:lines])
 
 
 @contextlib.contextmanager
@@ -124,11 +129,12 @@ def gtest(tally, preset, module, only=None, shard_filter=None, shard=None):
     data = json.loads(report.read_text())
     cases = [case for suite in data.get("testsuites", []) for case in suite.get("testsuite", [])]
     skipped = sum(case.get("result") == "SKIPPED" for case in cases)
-    failed = sum("failures" in case for case in cases)
+    broken = [f"{case['classname']}.{case['name']}: {first_lines(case['failures'][0]['failure'])}" for case in cases if "failures" in case]
+    failed = len(broken)
     ran = sum(case.get("status") == "RUN" for case in cases)
     if result.returncode != 0 and failed == 0:
         failed = 1  # a sanitizer spoke after the last test
-    tally.add(name, max(ran - failed - skipped, 0), failed, skipped, seconds, "" if not failed else tail(result.stdout, 80))
+    tally.add(name, max(ran - failed - skipped, 0), failed, skipped, seconds, "" if not failed else tail(result.stdout, 80), broken)
 
 
 MUTATIONS = 10_000  # damaged files per reader; without GLOAM_MUTATIONS the tests take 200
@@ -158,7 +164,7 @@ def python_tests(tally, file, only=None, **variables):
     ran = int(count.group(1)) if count else failed
     if ran or not only:
         tally.add(file, ran - failed - counted.get("skipped", 0), failed, counted.get("skipped", 0), time.time() - start,
-                  "" if not failed else tail(result.stdout, 80))
+                  "" if not failed else tail(result.stdout, 80), re.findall(r"^(?:FAIL|ERROR): (.+)", result.stdout, re.M))
 
 
 def api_python(tally):
@@ -184,7 +190,8 @@ def api_tests(tally, python, file, mark, only=None, preset="release", **variable
         failed = ran = 1
     if ran:
         name = file if preset == "release" else f"{Path(file).stem} ({preset})"
-        tally.add(name, ran - failed - skipped, failed, skipped, time.time() - start, "" if not failed else tail(result.stdout, 80))
+        tally.add(name, ran - failed - skipped, failed, skipped, time.time() - start, "" if not failed else tail(result.stdout, 80),
+                  re.findall(r"^(?:FAILED|ERROR) (.+)", result.stdout, re.M))
 
 
 def slow_api_tests(tally):
@@ -330,7 +337,7 @@ def main():
             tiers[args.tier](tally)
     total = time.time() - started
     if tally.broken:
-        print("failed: " + ", ".join(tally.broken))
+        print("failed:\n" + "\n".join(f"  {name}" for name in tally.broken))
     print(f"total {total / 60:.1f} min")
     print(f"{tally.passed} passed, {tally.failed} failed" + (f", {tally.skipped} skipped" if tally.skipped else ""))
     return 1 if tally.failed or not tally.passed else 0

@@ -160,15 +160,18 @@ TEST_F(Ros2BridgeTest, DamagedMessagesAreRefusedAndCounted) {
   ASSERT_TRUE(comes_true([&] { return writer->readers() == 1; }, std::chrono::seconds(20)));
   const auto before = simulation_->stats().commands_applied;
   const Bridge& bridge = *bridges->list().front();
-  for (size_t size = 0; size < 52; ++size) {  // a Twist has 4 + 48 bytes
+  // One at a time: a reader keeps the last ten messages only, and may discover the writer late.
+  for (size_t size = 1; size < 52; ++size) {  // a Twist has 4 + 48 bytes
     std::vector<uint8_t> bytes(size, 0xff);
     if (size > 1) bytes[0] = 0, bytes[1] = 1;
-    writer->write(bytes);
-    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    const int64_t refused = bridge.stats().refused;
+    EXPECT_TRUE(says_until(*writer, bytes, [&] { return bridge.stats().refused > refused; }))
+        << size << " bytes";
   }
-  // The reader may not know the writer yet, and a busy one keeps the last ten alone.
-  EXPECT_TRUE(says_until(*writer, std::vector<uint8_t>(20, 0xff),
-                         [&] { return bridge.stats().refused >= 40; }));
+  const int64_t refused = bridge.stats().refused;
+  EXPECT_TRUE(says_until(*writer, std::vector<uint8_t>(52, 0xff),
+                         [&] { return bridge.stats().refused > refused; }))
+      << "no CDR header";
   EXPECT_EQ(bridge.stats().messages_in, 0);
   EXPECT_TRUE(simulation_->step(2).ok());
   EXPECT_EQ(simulation_->stats().commands_applied, before);
@@ -198,10 +201,13 @@ TEST_F(Ros2BridgeTest, ASilentMasterLosesItsRobotWhichThenStands) {
   std::this_thread::sleep_for(std::chrono::milliseconds(1200));
   inlets.release_silent();
   EXPECT_TRUE(simulation_->claim(robot).ok());
-  ASSERT_TRUE(comes_true([&] { return simulation_->stats().commands_applied >= 2; },
-                         std::chrono::seconds(20)));
-  const auto log = simulation_->take_command_log();
-  EXPECT_EQ(std::get<SetVelocityGoal>(log.back().command.what).vx, 0);
+  // Two copies of the message may have arrived: the goal that stops the robot is the last one.
+  EXPECT_TRUE(comes_true(
+      [&] {
+        const auto log = simulation_->take_command_log();
+        return !log.empty() && std::get<SetVelocityGoal>(log.back().command.what).vx == 0;
+      },
+      std::chrono::seconds(20)));
 }
 
 }  // namespace
