@@ -169,9 +169,9 @@ TEST_F(Ros2BridgeTest, DamagedMessagesAreRefusedAndCounted) {
         << size << " bytes";
   }
   const int64_t refused = bridge.stats().refused;
-  EXPECT_TRUE(says_until(*writer, std::vector<uint8_t>(52, 0xff),
-                         [&] { return bridge.stats().refused > refused; }))
-      << "no CDR header";
+  EXPECT_TRUE(says_until(*writer, std::vector<uint8_t>(52, 0xff), [&] {
+    return bridge.stats().refused > refused;
+  })) << "no CDR header";
   EXPECT_EQ(bridge.stats().messages_in, 0);
   EXPECT_TRUE(simulation_->step(2).ok());
   EXPECT_EQ(simulation_->stats().commands_applied, before);
