@@ -1,7 +1,6 @@
 // The bridge to ROS 2 in one process: names, endpoints, what is computed for whom, and masters.
 // Real rclpy talks to it in tests/e2e/ros2_test.py.
 
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -20,8 +19,6 @@
 
 namespace gloam::bridge {
 namespace {
-
-using ::testing::HasSubstr;
 
 bool comes_true(const std::function<bool()>& condition, std::chrono::seconds patience) {
   const auto end = std::chrono::steady_clock::now() + patience;
