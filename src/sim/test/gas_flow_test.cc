@@ -107,19 +107,6 @@ Plume heskestad(double q, double height) {
 
 constexpr double kPlumePower = 20;  ///< [kW]
 
-/// Box with a floor around the foot of a plume, `height` m high.
-GasGrid plume_grid(float voxel, float height) {
-  const auto cells = [voxel](float size) { return int(std::round(size / voxel)); };
-  return {cells(3.2f), cells(3.2f), cells(height), voxel, {-1.6f, -1.6f, 0}};
-}
-
-std::unique_ptr<GasSolver> make_plume(const GasGrid& grid) {
-  GasProperties p;
-  p.open[4] = false;
-  p.cooling = 0;
-  return make_gas(grid, p);
-}
-
 GasSource plume_source() {
   GasSource source = ball({0, 0, 0.2f}, 0.25f);
   source.heat = float(kPlumePower) * 1e3f;
@@ -172,21 +159,9 @@ void check_plume(float voxel) {
   }
 }
 
-/// Height of the front of a plume that starts [m]: up to where some cell is a quarter as much
-/// warmer as on the axis of a steady one.
-double front_of(const GasSolver& gas) {
-  const GasGrid& grid = gas.grid();
-  std::vector<float> soot, kelvin;
-  gas.read(&soot, &kelvin);
-  const size_t plane = size_t(grid.nx) * size_t(grid.ny);
-  for (size_t k = size_t(grid.nz); k-- > 0;) {
-    const auto layer = kelvin.begin() + ptrdiff_t(k * plane);
-    const float warmest = *std::max_element(layer, layer + ptrdiff_t(plane));
-    const double z = (double(k) + 0.5) * double(grid.voxel);
-    if (double(warmest) - 293 > 0.25 * heskestad(kPlumePower, z).rise)
-      return double(k + 1) * double(grid.voxel);
-  }
-  return 0;
+/// The front is where the plume is a quarter as much warmer as on the axis of a steady one.
+double front_of_plume(const GasSolver& gas) {
+  return front_of(gas, [](double z) { return 0.25 * heskestad(kPlumePower, z).rise; });
 }
 
 /// The cap of a plume that starts rises at 0.61 of the speed on the axis of a steady one (Turner
@@ -203,7 +178,7 @@ void check_front(float voxel) {
   for (int n = 1; n <= kLast; ++n) {
     gas->step(0.1f, std::span(&source, 1), {});
     if (n != kFirst && n != kLast) continue;
-    last = front_of(*gas);
+    last = front_of_plume(*gas);
     if (n == kFirst) first = last;
     printf("voxels of %.2f m, %.1f s: front at %.2f m (law %.2f)\n", double(voxel), 0.1 * n, last,
            law(0.1 * n));

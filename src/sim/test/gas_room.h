@@ -4,8 +4,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
+#include <memory>
+#include <vector>
 
 #include "sim/effects/gas/gas_solver.h"
 
@@ -59,6 +62,36 @@ inline GasSource ball(Vec3f centre, float radius) {
   source.X_WS.p = centre;
   source.half_size = {radius, radius, radius};
   return source;
+}
+
+/// Box with a floor around the foot of a plume, `height` m high.
+inline GasGrid plume_grid(float voxel, float height) {
+  const auto cells = [voxel](float size) { return int(std::round(size / voxel)); };
+  return {cells(3.2f), cells(3.2f), cells(height), voxel, {-1.6f, -1.6f, 0}};
+}
+
+/// Still air above a floor, which loses no heat.
+inline std::unique_ptr<GasSolver> make_plume(const GasGrid& grid) {
+  GasProperties p;
+  p.open[4] = false;
+  p.cooling = 0;
+  return make_gas(grid, p);
+}
+
+/// Height of the front of a plume that starts [m]: up to where some cell is warmer by more than
+/// `least_rise` of its height [m] [K].
+inline double front_of(const GasSolver& gas, const std::function<double(double)>& least_rise) {
+  const GasGrid& grid = gas.grid();
+  std::vector<float> soot, kelvin;
+  gas.read(&soot, &kelvin);
+  const size_t plane = size_t(grid.nx) * size_t(grid.ny);
+  for (size_t k = size_t(grid.nz); k-- > 0;) {
+    const auto layer = kelvin.begin() + ptrdiff_t(k * plane);
+    const double warmest = double(*std::max_element(layer, layer + ptrdiff_t(plane))) - 293;
+    const double z = (double(k) + 0.5) * double(grid.voxel);
+    if (warmest > least_rise(z)) return double(k + 1) * double(grid.voxel);
+  }
+  return 0;
 }
 
 }  // namespace gloam
