@@ -71,6 +71,12 @@ def tail(text, lines=40):
     return "\n".join("    " + line for line in text.splitlines()[-lines:])
 
 
+def broken_tests(text):
+    """Names in the summaries of unittest ("FAIL: test …") and pytest ("FAILED file::test - …"), without unittest's last line
+    ("FAILED (failures=1)")."""
+    return re.findall(r"^(?:FAIL:|FAILED|ERROR:?) ([^(].*)", text, re.M)
+
+
 def first_lines(text, lines=6):
     return "\n    ".join(text.strip().splitlines()[:lines])
 
@@ -164,7 +170,7 @@ def python_tests(tally, file, only=None, **variables):
     ran = int(count.group(1)) if count else failed
     if ran or not only:
         tally.add(file, ran - failed - counted.get("skipped", 0), failed, counted.get("skipped", 0), time.time() - start,
-                  "" if not failed else tail(result.stdout, 80), re.findall(r"^(?:FAIL|ERROR): (.+)", result.stdout, re.M))
+                  "" if not failed else tail(result.stdout, 80), broken_tests(result.stdout))
 
 
 def api_python(tally):
@@ -191,7 +197,7 @@ def api_tests(tally, python, file, mark, only=None, preset="release", **variable
     if ran:
         name = file if preset == "release" else f"{Path(file).stem} ({preset})"
         tally.add(name, ran - failed - skipped, failed, skipped, time.time() - start, "" if not failed else tail(result.stdout, 80),
-                  re.findall(r"^(?:FAILED|ERROR) (.+)", result.stdout, re.M))
+                  broken_tests(result.stdout))
 
 
 def slow_api_tests(tally):
