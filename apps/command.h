@@ -33,6 +33,7 @@ void add_report(CLI::App& app, Globals& globals, Action& action);
 void add_check(CLI::App& app, Globals& globals, Action& action);
 void add_cache(CLI::App& app, Globals& globals, Action& action);
 void add_props(CLI::App& app, Globals& globals, Action& action);
+void add_robots(CLI::App& app, Globals& globals, Action& action);
 void add_convert(CLI::App& app, Globals& globals, Action& action);
 void add_schema(CLI::App& app, Globals& globals, Action& action);
 void add_completion(CLI::App& app, Globals& globals, Action& action);

@@ -21,6 +21,7 @@
 #include "gloam/scene/object.h"
 #include "gloam/scene/probe.h"
 #include "gloam/scene/robot.h"
+#include "gloam/scene/robot_model.h"
 #include "gloam/scene/run.h"
 #include "gloam/scene/sensor.h"
 #include "gloam/scene/sky.h"

@@ -5,6 +5,7 @@
 #include "gloam/scene.h"
 #include "places/generators.h"
 #include "scene/files/file_finder.h"
+#include "scene/robots/robot_models.h"
 #include "scene/toml/overlay.h"
 #include "scene/toml/toml_reader.h"
 #include "scene/validate/validate.h"
@@ -50,10 +51,11 @@ Status find_files(const FileFinder& finder, Scene* scene) {
 
 namespace {
 
-Result<Scene> read_scene(const toml::table& table, const fs::path& path, Scene scene) {
+Result<Scene> read_scene(toml::table table, const fs::path& path, Scene scene) {
   scene.file = path;
-  GLOAM_TRY_STATUS(read_scene_toml(table, path.string(), &scene));
   GLOAM_TRY(const FileFinder finder, FileFinder::of_scene(path, scene.access));
+  GLOAM_TRY_STATUS(expand_robot_models(finder, scene.access, path.string(), &table));
+  GLOAM_TRY_STATUS(read_scene_toml(table, path.string(), &scene));
   GLOAM_TRY_STATUS(find_files(finder, &scene));
   GLOAM_TRY_STATUS(validate_scene(scene));
   if (scene.robots.empty() && scene.environment.file.empty() && !has_generator(scene.environment) &&
@@ -89,11 +91,11 @@ Result<Scene> load_scene(const fs::path& path, const FileAccess& access) {
     if (!fs::exists(path, code)) error.hint = suggest_file(absolute_path(path, ""));
     return error;
   }
-  GLOAM_TRY(const toml::table table, parse_toml(*text, path.string()));
+  GLOAM_TRY(toml::table table, parse_toml(*text, path.string()));
   if (is_model_toml(table)) return as_bare_model();
   if (text->size() > kLargestScene)
     return Error{ErrorKind::kInput, "the scene is larger than 4 MiB", {path.string(), 0, 0}};
-  return read_scene(table, path, std::move(scene));
+  return read_scene(std::move(table), path, std::move(scene));
 }
 
 Result<Scene> parse_scene(std::string_view text, const fs::path& folder, const FileAccess& access) {
@@ -101,11 +103,11 @@ Result<Scene> parse_scene(std::string_view text, const fs::path& folder, const F
   if (text.size() > kLargestScene)
     return Error{ErrorKind::kInput, "the scene is larger than 4 MiB"};
   GLOAM_TRY(const std::optional<std::string> plain, plain_text(text, path.string()));
-  GLOAM_TRY(const toml::table table, parse_toml(plain ? *plain : std::string(text), path.string()));
+  GLOAM_TRY(toml::table table, parse_toml(plain ? *plain : std::string(text), path.string()));
   Scene scene;
   scene.access = access;
   scene.name = "scene";
-  return read_scene(table, path, std::move(scene));
+  return read_scene(std::move(table), path, std::move(scene));
 }
 
 Result<Scene> overlay_scene(const Scene& scene, std::string_view text, const std::string& file) {
@@ -115,12 +117,13 @@ Result<Scene> overlay_scene(const Scene& scene, std::string_view text, const std
   GLOAM_TRY(toml::table over, parse_toml(plain ? *plain : std::string(text), file));
   const fs::path path = scene.file.empty() ? fs::path("scene.toml") : scene.file;
   GLOAM_TRY(toml::table table, parse_toml(to_toml(scene), path.string()));
+  forget_other_models(over, &table);
   overlay_table(std::move(over), &table);
   Scene changed;
   changed.access = scene.access;
   changed.name = scene.name;
   changed.bare_model = scene.bare_model;
-  return read_scene(table, path, std::move(changed));
+  return read_scene(std::move(table), path, std::move(changed));
 }
 
 Result<Scene> overlay_scene(const Scene& scene, const fs::path& file) {

@@ -40,6 +40,8 @@ struct RobotInstance {
   std::string prefix;  ///< "go1/"; "" for a bare model
   int root_body = -1;  ///< body id of its root
   RobotOptions options;
+  /// Actuators that `options.controller` may use, in increasing order; empty = all of the robot's.
+  std::vector<int> actuators = {};
 };
 
 /// A geom that is drawn but not simulated: the visuals of a URDF, which stock loading discards.

@@ -77,6 +77,15 @@ std::vector<int> robot_joints(const mjModel& model, const RobotInstance& robot) 
   return joints;
 }
 
+int floating_joint(const mjModel& model, int body) {
+  const int root = model.body_rootid[body];
+  for (int i = 0; i < model.body_jntnum[root]; ++i) {
+    const int joint = model.body_jntadr[root] + i;
+    if (model.jnt_type[joint] == mjJNT_FREE) return joint;
+  }
+  return -1;
+}
+
 std::vector<int> robot_actuators(const mjModel& model, const RobotInstance& robot) {
   std::vector<int> actuators;
   for (int actuator = 0; actuator < static_cast<int>(model.nactuator); ++actuator) {

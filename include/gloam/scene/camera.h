@@ -38,7 +38,7 @@ struct LensOptions {
 /// [[camera]]: a camera added to the scene, fixed to the world or to a body.
 struct CameraOptions {
   std::string name = {};  ///< unique
-  std::string body = {};  ///< full name of the body to which it is fixed; empty = world
+  std::string body = {};  ///< full name of the body or site to which it is fixed; empty = world
   /// Body whose position it follows with a fixed offset and heading; empty = none.
   std::string track = {};
   Vec3 position = {};  ///< in the frame of `body`; for `track`: offset from it in world axes [m]

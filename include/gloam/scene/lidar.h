@@ -25,10 +25,10 @@ struct LidarSurfaceOptions {
 /// Options of a LiDAR. Empty options are taken from the preset. Angles are in degrees, as in data
 /// sheets. Axes of the sensor's frame: x ahead, y to the left, z up (ROS REP 103).
 struct LidarOptions {
-  std::string name = {};          ///< unique
-  std::string body = {};          ///< full name of the body to which it is fixed; empty = world
-  Vec3 position = {};             ///< in the frame of `body` [m]
-  Quat orientation = {};          ///< in the frame of `body`
+  std::string name = {};  ///< unique
+  std::string body = {};  ///< full name of the body or site to which it is fixed; empty = world
+  Vec3 position = {};     ///< in the frame of `body` [m]
+  Quat orientation = {};  ///< in the frame of `body`
   std::string preset = "OS1-64";  ///< named after data sheets; docs/lidar.md has the list
   /// Scan pattern: spinning (rotating rings), raster (a grid, column by column), flash (a grid, all
   /// at once), rosette (two rotating prisms).

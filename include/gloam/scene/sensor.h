@@ -93,10 +93,10 @@ struct SensorOptions {
 
 /// Pose of a rig and the common options of its cameras.
 struct RigOptions {
-  std::string name = {};             ///< unique; its cameras are NAME/…
-  std::string body = {};             ///< full name of the body to which it is fixed; empty = world
-  Vec3 position = {};                ///< position of the left (or only reference) eye [m]
-  std::optional<Vec3> look_at = {};  ///< point to look at, in the same frame [m]
+  std::string name = {};  ///< unique; its cameras are NAME/…
+  std::string body = {};  ///< full name of the body or site to which it is fixed; empty = world
+  Vec3 position = {};     ///< position of the left (or only reference) eye [m]
+  std::optional<Vec3> look_at = {};      ///< point to look at, in the same frame [m]
   std::optional<Quat> orientation = {};  ///< instead of look_at
   double fovy = 58;                      ///< vertical field of view [deg]
   int width = 640, height = 480;         ///< [px]

@@ -72,8 +72,12 @@ Result<FileFinder> FileFinder::of_scene(const fs::path& scene_file, const FileAc
   FileFinder finder;
   finder.folder_ = absolute_path(scene_file, "").parent_path();
   GLOAM_TRY(finder.roots_.emplace_back(), find_model_root(scene_file, access));
+  std::error_code code;
+  if (const fs::path own = catalogue_folder(); !own.empty()) {
+    const fs::path canonical = fs::weakly_canonical(own, code);
+    finder.roots_.push_back({own, canonical, canonical});
+  }
   for (const auto& [name, folder] : access.packages) {
-    std::error_code code;
     const fs::path canonical = fs::weakly_canonical(folder, code);
     finder.roots_.push_back({absolute_path(folder, ""), canonical, canonical});
   }

@@ -26,8 +26,8 @@ class FileFinder {
   static Result<FileFinder> of_scene(const std::filesystem::path& scene_file,
                                      const FileAccess& access);
 
-  /// Makes a path of the scene absolute and refuses it if it leaves the scene's root. No path, no
-  /// file.
+  /// Makes a path of the scene absolute and refuses it if it leaves the scene's root and Gloam's
+  /// own robots. No path, no file.
   Status find(std::filesystem::path* file, const SourceLoc& loc) const;
   /// `find` and check_model_file.
   Status find_model(std::filesystem::path* file, const SourceLoc& loc) const;

@@ -11,6 +11,7 @@
 #include "base/files.h"
 #include "base/plain_text.h"
 #include "geometry/mesh/model_file.h"
+#include "gloam/program.h"
 #include "scene/files/xml_text.h"
 
 namespace gloam {
@@ -114,6 +115,11 @@ std::string why_not_a_path(std::string_view name) {
   return {};
 }
 
+fs::path catalogue_folder() {
+  const Result<fs::path> home = gloam_home();
+  return home.ok() ? absolute_path(*home / "assets" / "robots", "") : fs::path();
+}
+
 Result<ModelRoot> find_model_root(const fs::path& file, const FileAccess& access) {
   const fs::path path = absolute_path(file, "");
   std::error_code code;
@@ -121,7 +127,11 @@ Result<ModelRoot> find_model_root(const fs::path& file, const FileAccess& access
   if (!access.root.empty()) {
     root = linked = absolute_path(access.root, "");
     const fs::path canonical_root = fs::weakly_canonical(root, code);
-    if (!is_below(fs::weakly_canonical(path, code), canonical_root)) {
+    const fs::path canonical = fs::weakly_canonical(path, code);
+    if (!is_below(canonical, canonical_root)) {
+      const fs::path own = catalogue_folder(), canonical_own = fs::weakly_canonical(own, code);
+      if (!own.empty() && is_below(canonical, canonical_own))
+        return ModelRoot{own, canonical_own, canonical_own};
       return Error{ErrorKind::kInput,
                    fmt::format("is not inside the folder '{}' given with --root", root.string()),
                    {path.string(), 0, 0},

@@ -34,8 +34,12 @@ struct ModelRoot {
 /// Root of the model (or scene) `file`: FileAccess::root if given, its own folder if strict, else
 /// the nearest of its folder and four more levels up that holds package.xml, else the highest of
 /// them; never climbs to "/", a home folder, or past a symbolic link. Errors: the file is not
-/// inside the root that the user gave.
+/// inside the root that the user gave, nor in the catalogue_folder().
 Result<ModelRoot> find_model_root(const std::filesystem::path& file, const FileAccess& access);
+
+/// Folder of Gloam's own robots, gloam_home()/assets/robots, which every scene may read; empty
+/// where it is not found.
+std::filesystem::path catalogue_folder();
 
 /// Empty when `path` (absolute) may be read under one of `roots`; else why not, as half a sentence
 /// that follows the file's name.

@@ -59,7 +59,7 @@ void visit_fields(Visitor& v, CameraOptions& o) {
 
 template <class Visitor>
 void visit_rig(Visitor& v, RigOptions& o) {
-  v("name", o.name, FieldRule{.required = true, .identifier = true});
+  v("name", o.name, FieldRule{.required = true});  // ROBOT/SENSOR from a catalogue's robot
   v("body", o.body, FieldRule{});
   visit_view(v, o);
 }

@@ -25,6 +25,18 @@ struct ControllerTypes {
       {"torque", {"target"}},
       {"joint_position", {"kp", "kd", "target"}},
       {"trot", {"goals"}},
+      {"quadrotor", {"goals", "flight"}},
+      {"diff_drive", {"goals", "drive"}},
+      {"gripper", {"grip"}},
+      {"joint_velocity", {"kp", "kd"}},
+      {"joint_effort", {"kp", "kd"}},
+      {"ik",
+       {"frame", "position_cost", "orientation_cost", "posture_cost", "time_constant",
+        "velocity_limit", "collision_distance", "kp", "kd"}},
+      {"osc",
+       {"frame", "position_stiffness", "orientation_stiffness", "posture_stiffness",
+        "damping_ratio"}},
+      {"policy", {"goals", "network", "settings", "params"}},
   };
 };
 

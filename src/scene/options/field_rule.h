@@ -20,7 +20,8 @@ struct FieldRule {
   bool identifier = false;       ///< a name: not empty, no '/' and no control characters
   std::string_view not_of = {};  ///< type of its table that has no such option; "" = it has
   bool one_for_three = false;    ///< a vector may be written as one number
-  bool may_be_empty = false;     ///< of a text with choices: "" = not given
+  bool may_be_empty = false;     ///< of a text with choices or a name: "" = not given
+  std::string_view unless = {};  ///< required unless this key of its table is given
 };
 
 /// For FieldRule::choices.

@@ -8,7 +8,7 @@ namespace gloam {
 
 template <class Visitor>
 void visit_fields(Visitor& v, ProbeOptions& o) {
-  v("name", o.name, FieldRule{.required = true, .identifier = true});
+  v("name", o.name, FieldRule{.required = true});  // ROBOT/SENSOR from a catalogue's robot
   v("quantity", o.quantity, FieldRule{.required = true, .choices = words(kProbeWords)});
   v("position", o.position, FieldRule{.unit = "m", .min = -kLargestLength, .max = kLargestLength});
   v("body", o.body, FieldRule{});

@@ -202,7 +202,8 @@ class TableSchema {
     if (!rule.unit.empty() && text.find(fmt::format("[{}", rule.unit)) == std::string::npos)
       text += fmt::format("{}[{}]", text.empty() ? "" : " ", rule.unit);
     if (rule.required) {
-      required_.push_back(key);
+      (rule.unless.empty() ? required_ : required_unless_).push_back(key);
+      unless_ = rule.unless.empty() ? unless_ : rule.unless;
       schema.erase("default");
     }
     if (!text.empty() && !schema.contains("properties")) schema["description"] = text;
@@ -214,12 +215,16 @@ class TableSchema {
                    {"properties", std::move(properties_)},
                    {"additionalProperties", false}};
     if (!required_.empty()) schema["required"] = std::move(required_);
+    if (!required_unless_.empty())
+      schema["anyOf"] = {{{"required", std::move(required_unless_)}},
+                         {{"required", Json::array({unless_})}}};
     return schema;
   }
 
  private:
   MemberTexts texts_;
-  Json properties_ = Json::object(), required_ = Json::array();
+  Json properties_ = Json::object(), required_ = Json::array(), required_unless_ = Json::array();
+  std::string_view unless_;
 };
 
 template <class Options>

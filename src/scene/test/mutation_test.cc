@@ -9,15 +9,18 @@
 #include "base/test/mutator.h"
 #include "scene/files/urdf_text.h"
 #include "scene/files/xml_scan.h"
+#include "scene/robots/robot_models.h"
+#include "scene/test/temp_folder.h"
 #include "scene/toml/toml_reader.h"
 #include "scene/validate/validate.h"
 
 namespace gloam {
 namespace {
 
-/// Mutations of `seeds` in turns; `read` tells whether one was fine.
+/// Mutations of `seeds` in turns; `read` tells whether one was fine. `file` begins its errors.
 void expect_answers(const std::vector<std::string>& seeds,
-                    const std::function<Status(const std::string&)>& read) {
+                    const std::function<Status(const std::string&)>& read,
+                    const std::string& file = "damaged") {
   for (const std::string& seed : seeds) {
     const Status status = read(seed);
     ASSERT_TRUE(status.ok()) << "not fine to begin with: " << status.error().to_string();
@@ -30,7 +33,7 @@ void expect_answers(const std::vector<std::string>& seeds,
     if (status.ok()) continue;
     ++refused;
     const std::string told = status.error().to_string();
-    ASSERT_TRUE(told.starts_with("damaged") && told.find('\n') == std::string::npos)
+    ASSERT_TRUE(told.starts_with(file) && told.find('\n') == std::string::npos)
         << "file " << i << ": " << told << "\n"
         << text;
   }
@@ -49,6 +52,28 @@ TEST(Mutations, SceneFilesDoNoHarm) {
     GLOAM_TRY_STATUS(read_scene_toml(text, "damaged.toml", &scene));
     return validate_scene(scene);
   });
+}
+
+TEST(Mutations, RobotsOfACatalogueDoNoHarm) {
+  TempFolder folder;
+  folder.write("damaged/cart.xml", "<mujoco/>");
+  const std::filesystem::path file = folder.path() / "damaged/robot.toml";
+  const auto read = [&file](const std::string& text) -> Status {
+    GLOAM_TRY(RobotEntry entry, parse_robot_entry(text, file, {}));
+    toml::array sensors, robots;
+    for (const SensorTemplate& sensor : entry.sensors) sensors.push_back(sensor.name);
+    robots.push_back(toml::table{{"model", "toy"}, {"sensors", std::move(sensors)}});
+    toml::table scene{{"robot", std::move(robots)}};
+    toml::table* robot = scene["robot"][0].as_table();
+    GLOAM_TRY_STATUS(merge_robot_entry(std::move(entry), file.string(), robot, &scene));
+    Scene out;
+    GLOAM_TRY_STATUS(read_scene_toml(scene, file.string(), &out));
+    return validate_scene(out);
+  };
+  expect_answers(
+      {read_text_file(std::string(GLOAM_SOURCE_DIR) + "/tests/fuzz/robot_entry_fuzz/cart.toml")
+           .value()},
+      read, (folder.path() / "damaged").string());
 }
 
 TEST(Mutations, ModelsDoNoHarm) {

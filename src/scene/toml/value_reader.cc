@@ -90,11 +90,11 @@ bool ValueReader::check_text(const toml::node& node, const std::string& key,
     fail(node, fmt::format("'{}' is empty", key));
     return false;
   }
+  if (rule.may_be_empty && value.empty()) return true;
   if (rule.identifier && (value.empty() || value.find('/') != std::string::npos)) {
     fail(node, fmt::format("'{}' must be a name without '/', not '{}'", key, value));
     return false;
   }
-  if (rule.may_be_empty && value.empty()) return true;
   if (!rule.choices.empty() &&
       std::find(rule.choices.begin(), rule.choices.end(), value) == rule.choices.end()) {
     const std::vector<std::string> choices(rule.choices.begin(), rule.choices.end());

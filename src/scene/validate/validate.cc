@@ -13,6 +13,7 @@
 #include "scene/options/option_fields.h"
 #include "scene/overrides.h"
 #include "scene/randomize/randomize.h"
+#include "scene/validate/validate_actuator.h"
 #include "scene/validate/validate_agent.h"
 #include "scene/validate/validate_effect.h"
 #include "scene/validate/validate_imager.h"
@@ -74,9 +75,9 @@ class FieldChecker {
   }
   void check(std::string_view key, const std::string& text, const FieldRule& rule) {
     if (rule.required && text.empty()) return fail(key, "is empty");
+    if (rule.may_be_empty && text.empty()) return;
     if (rule.identifier && (text.empty() || text.find('/') != std::string::npos))
       return fail(key, fmt::format("must be a name without '/', not '{}'", text));
-    if (rule.may_be_empty && text.empty()) return;
     if (!rule.choices.empty() &&
         std::find(rule.choices.begin(), rule.choices.end(), text) == rule.choices.end()) {
       const std::vector<std::string> choices(rule.choices.begin(), rule.choices.end());
@@ -232,6 +233,13 @@ Status validate_scene(const Scene& scene) {
   GLOAM_TRY_STATUS(validate_effects(scene));
   GLOAM_TRY_STATUS(validate_agents(scene));
   for (const RobotOptions& robot : scene.robots) {
+    GLOAM_TRY_STATUS(validate_actuators(robot));
+    GLOAM_TRY_STATUS(refuse_duplicates(robot.parts, "part"));
+    for (const RobotPart& part : robot.parts) {
+      if (part.controller.goals.empty()) continue;
+      return Error{ErrorKind::kInput, "velocity goals belong to the robot, not to a part of it",
+                   part.controller.loc, "write them in [robot.controller]"};
+    }
     for (size_t i = 1; i < robot.controller.goals.size(); ++i) {
       const VelocityGoal& goal = robot.controller.goals[i];
       if (goal.time >= robot.controller.goals[i - 1].time) continue;

@@ -15,6 +15,7 @@
 #include "scene/files/mujoco_guard.h"
 #include "scene/overcast.h"
 #include "scene/randomize/randomize.h"
+#include "scene/robots/robot_models.h"
 #include "scene/validate/validate.h"
 #include "world/cache/model_cache.h"
 #include "world/compile/compile_progress.h"
@@ -163,9 +164,10 @@ void expand_outputs(Scene* scene) {
     if (camera.outputs) camera.outputs = recorded_outputs(*camera.outputs);
 }
 
-Result<World> compile_scene(const Scene& written, const std::string& keyframe,
+Result<World> compile_scene(const Scene& given, const std::string& keyframe,
                             const ProgressCallback& callback) {
   install_mujoco_handler();
+  GLOAM_TRY(const Scene written, with_robot_models(given));
   GLOAM_TRY_STATUS(validate_scene(written));
   Scene scene = written;
   CompileProgress progress(callback, weights_of(scene));

@@ -5,11 +5,13 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <optional>
 
 #include "base/text.h"
 #include "places/writer/spec_edit.h"
 #include "world/compile/look_at.h"
 #include "world/model_memory.h"
+#include "world/sensors/mount.h"
 #include "world/world.h"
 
 namespace gloam {
@@ -34,9 +36,29 @@ std::vector<std::string> spec_names(const mjSpec* spec, mjtObj type) {
   return names;
 }
 
+std::vector<std::string> mount_names(const mjSpec* spec) {
+  std::vector<std::string> names = spec_names(spec, mjOBJ_BODY);
+  for (std::string& site : spec_names(spec, mjOBJ_SITE)) names.push_back(std::move(site));
+  return names;
+}
+
 void set_pose(mjsCamera* out, const double p[3], const double q[4]) {
   std::copy(p, p + 3, out->pos);
   std::copy(q, q + 4, out->quat);
+}
+
+// The body that a camera follows, or the body or site to which it is fixed.
+Result<std::optional<SpecMount>> camera_mount(const CameraOptions& camera, mjSpec* spec) {
+  if (!camera.track.empty()) {
+    mjsBody* body = mjs_findBody(spec, camera.track.c_str());
+    return body == nullptr ? std::optional<SpecMount>() : std::optional(SpecMount{.body = body});
+  }
+  Result<std::optional<SpecMount>> mount = find_mount(spec, camera.body);
+  if (mount.ok()) return mount;
+  Error error = mount.error();
+  error.message = fmt::format("camera '{}': {}", camera.name, error.message);
+  error.loc = camera.loc;
+  return error;
 }
 
 }  // namespace
@@ -51,16 +73,19 @@ Status add_cameras(const Scene& scene, Level* level) {
                    "choose another name, or omit the pose to use the model's camera"};
     }
     const std::string& name = camera.track.empty() ? camera.body : camera.track;
-    mjsBody* body = mjs_findBody(spec, name.empty() ? "world" : name.c_str());
-    if (body == nullptr) {
+    GLOAM_TRY(const std::optional<SpecMount> mount, camera_mount(camera, spec));
+    if (!mount) {
       return Error{ErrorKind::kInput,
-                   fmt::format("camera '{}': there is no body '{}'", camera.name, name), camera.loc,
-                   suggest_name(name, spec_names(spec, mjOBJ_BODY))};
+                   fmt::format("camera '{}': there is no body or site '{}'", camera.name, name),
+                   camera.loc, suggest_name(name, mount_names(spec))};
     }
-    mjsCamera* out = edit(mjs_addCamera, body, nullptr);
+    mjsCamera* out = edit(mjs_addCamera, mount->body, nullptr);
+    if (mount->frame != nullptr) edit(mjs_setFrame, out->element, mount->frame);
     edit(mjs_setName, out->element, camera.name.c_str());
-    const Quat q = orientation_of(camera);
-    const double position[3] = {camera.position.x, camera.position.y, camera.position.z};
+    // A body's frame leaves the numbers as they are, to the last bit.
+    const Pose X_MC{camera.position, orientation_of(camera)};
+    const auto [p, q] = mount->X_FM == Pose{} ? X_MC : compose(mount->X_FM, X_MC);
+    const double position[3] = {p.x, p.y, p.z};
     const double quat[4] = {q.w, q.x, q.y, q.z};
     set_pose(out, position, quat);
     if (!camera.track.empty()) out->mode = mjCAMLIGHT_TRACK;

@@ -365,7 +365,8 @@ TEST_F(LevelTest, ErrorsNameTheSceneAndWhatExists) {
       error_of("c.toml",
                "[[robot]]\nname = \"a\"\nfile = \"arm.xml\"\n[[camera]]\n"
                "name = \"c\"\nbody = \"a/bse\"\n"),
-      HasSubstr("c.toml:4:1: camera 'c': there is no body 'a/bse' (did you mean 'a/base'?)"));
+      HasSubstr(
+          "c.toml:4:1: camera 'c': there is no body or site 'a/bse' (did you mean 'a/base'?)"));
   EXPECT_THAT(error_of("t.toml",
                        "[[robot]]\nname = \"a\"\nfile = \"arm.xml\"\n[[camera]]\n"
                        "name = \"a/eye\"\nbody = \"a/base\"\n"),
