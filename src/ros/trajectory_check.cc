@@ -5,25 +5,14 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
-#include <string_view>
-#include <vector>
+
+#include "gloam/command.h"
 
 namespace gloam {
 namespace {
 
-constexpr size_t kMostPoints = 100'000;
-
 Error bad(std::string message, std::string hint = {}) {
   return {ErrorKind::kInput, std::move(message), {}, std::move(hint)};
-}
-
-Status check_numbers(const std::vector<double>& numbers, std::string_view what, size_t joints,
-                     bool is_required) {
-  if (numbers.size() != joints && (is_required || !numbers.empty()))
-    return bad(fmt::format("a point has {} {} for {} joints", numbers.size(), what, joints));
-  if (!std::ranges::all_of(numbers, [](double v) { return std::isfinite(v); }))
-    return bad(fmt::format("the {} of a point are not finite", what));
-  return {};
 }
 
 }  // namespace
@@ -39,23 +28,24 @@ Status check_joint_names(std::span<const std::string> names) {
   return {};
 }
 
-Status check_points(const trajectory_msgs::JointTrajectory& trajectory) {
-  const size_t joints = trajectory.joint_names.size();
-  if (trajectory.points.empty()) return bad("the trajectory has no points");
-  if (trajectory.points.size() > kMostPoints)
-    return bad(fmt::format("the trajectory has more than {} points", kMostPoints));
-  double before = -1;
-  for (const trajectory_msgs::JointTrajectoryPoint& point : trajectory.points) {
-    const double time = point.time_from_start.sec + 1e-9 * point.time_from_start.nanosec;
-    if (time < 0) return bad("the time of a point is negative");
-    if (time <= before) return bad("the times of the points do not increase");
-    before = time;
-    GLOAM_TRY_STATUS(check_numbers(point.positions, "positions", joints, true));
-    GLOAM_TRY_STATUS(check_numbers(point.velocities, "velocities", joints, false));
-    GLOAM_TRY_STATUS(check_numbers(point.accelerations, "accelerations", joints, false));
-    GLOAM_TRY_STATUS(check_numbers(point.effort, "efforts", joints, false));
+Result<JointTrajectory> joint_trajectory_of(const trajectory_msgs::JointTrajectory& message) {
+  const size_t joints = message.joint_names.size();
+  JointTrajectory trajectory;
+  for (const trajectory_msgs::JointTrajectoryPoint& point : message.points) {
+    if (!point.effort.empty() && point.effort.size() != joints)
+      return bad(fmt::format("a point has {} efforts for {} joints", point.effort.size(), joints));
+    if (!std::ranges::all_of(point.effort, [](double v) { return std::isfinite(v); }))
+      return bad("the efforts of a point are not finite");
+    trajectory.points.push_back({point.time_from_start.sec + 1e-9 * point.time_from_start.nanosec,
+                                 point.positions, point.velocities, point.accelerations});
   }
-  return {};
+  GLOAM_TRY_STATUS(JointPath::make(trajectory, joints));
+  return trajectory;
+}
+
+int64_t start_step(const trajectory_msgs::JointTrajectory& message, double now, double timestep) {
+  const double stamp = message.header.stamp.sec + 1e-9 * message.header.stamp.nanosec;
+  return stamp > now ? std::llround(stamp / timestep) : Command::kNextStep;
 }
 
 }  // namespace gloam

@@ -1,10 +1,12 @@
 #pragma once
-// Rules that every trajectory of joints follows, those of ros2_controllers'
+// Trajectories of joints from messages, by the rules of ros2_controllers'
 // joint_trajectory_controller, for the action and for topics.
 
+#include <cstdint>
 #include <span>
 #include <string>
 
+#include "gloam/joints/joint_trajectory.h"
 #include "gloam/result.h"
 #include "ros/messages/trajectory_msgs.h"
 
@@ -12,9 +14,11 @@ namespace gloam {
 
 /// Errors: no names, an empty one, one that is there twice.
 Status check_joint_names(std::span<const std::string> names);
-/// Errors: no points, or too many; times that are negative or do not increase; a point without one
-/// position for each joint, or with velocities, accelerations or efforts that are neither none nor
-/// one for each joint; numbers that are not finite.
-Status check_points(const trajectory_msgs::JointTrajectory& trajectory);
+/// Efforts are checked but not used. Errors: those of JointPath::make(); efforts that are neither
+/// none nor one for each joint, or not finite.
+Result<JointTrajectory> joint_trajectory_of(const trajectory_msgs::JointTrajectory& message);
+/// The step at which a message's trajectory starts: that of its stamp, or the next one if the stamp
+/// is 0 or past. `now`: simulation time; steps take `timestep` [s].
+int64_t start_step(const trajectory_msgs::JointTrajectory& message, double now, double timestep);
 
 }  // namespace gloam

@@ -49,6 +49,18 @@ struct Gas {
                 fuel_rate, heat_released, fuel_burned)
 };
 
+/// The actuator models of a robot at an instant: docs/actuators.md. NaN = not modelled.
+struct ActuatorStates {
+  std_msgs::Header header;
+  std::vector<std::string> name;    ///< of the joints, without the robot's name
+  std::vector<double> torque;       ///< applied to the joint [N m]
+  std::vector<double> current;      ///< of the winding [A]
+  std::vector<double> temperature;  ///< of the winding [degrees Celsius]
+  double power = 0;                 ///< electrical, of all actuators [W]
+  double energy = 0;                ///< electrical, since the beginning [J]
+  GLOAM_MESSAGE(ActuatorStates, header, name, torque, current, temperature, power, energy)
+};
+
 /// Numbers of a probe at an instant, world axes: docs/sensors.md.
 struct Probe {
   std_msgs::Header header;

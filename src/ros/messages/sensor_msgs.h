@@ -80,4 +80,35 @@ struct FluidPressure {
   GLOAM_MESSAGE(FluidPressure, header, fluid_pressure, variance)
 };
 
+/// Floats that are not measured are NaN.
+struct BatteryState {
+  std_msgs::Header header;
+  float voltage = 0;          ///< [V]
+  float temperature = 0;      ///< [degrees Celsius]
+  float current = 0;          ///< negative = it discharges [A]
+  float charge = 0;           ///< [A h]
+  float capacity = 0;         ///< of the last full charge [A h]
+  float design_capacity = 0;  ///< [A h]
+  float percentage = 0;       ///< 0 … 1
+  uint8_t power_supply_status = 0, power_supply_health = 0, power_supply_technology = 0;
+  bool present = false;
+  std::vector<float> cell_voltage, cell_temperature;  ///< [V], [degrees Celsius]; empty = unknown
+  std::string location, serial_number;
+  GLOAM_CONSTANTS(uint8, POWER_SUPPLY_STATUS_UNKNOWN = 0, POWER_SUPPLY_STATUS_CHARGING = 1,
+                  POWER_SUPPLY_STATUS_DISCHARGING = 2, POWER_SUPPLY_STATUS_NOT_CHARGING = 3,
+                  POWER_SUPPLY_STATUS_FULL = 4, POWER_SUPPLY_HEALTH_UNKNOWN = 0,
+                  POWER_SUPPLY_HEALTH_GOOD = 1, POWER_SUPPLY_HEALTH_OVERHEAT = 2,
+                  POWER_SUPPLY_HEALTH_DEAD = 3, POWER_SUPPLY_HEALTH_OVERVOLTAGE = 4,
+                  POWER_SUPPLY_HEALTH_UNSPEC_FAILURE = 5, POWER_SUPPLY_HEALTH_COLD = 6,
+                  POWER_SUPPLY_HEALTH_WATCHDOG_TIMER_EXPIRE = 7,
+                  POWER_SUPPLY_HEALTH_SAFETY_TIMER_EXPIRE = 8, POWER_SUPPLY_TECHNOLOGY_UNKNOWN = 0,
+                  POWER_SUPPLY_TECHNOLOGY_NIMH = 1, POWER_SUPPLY_TECHNOLOGY_LION = 2,
+                  POWER_SUPPLY_TECHNOLOGY_LIPO = 3, POWER_SUPPLY_TECHNOLOGY_LIFE = 4,
+                  POWER_SUPPLY_TECHNOLOGY_NICD = 5, POWER_SUPPLY_TECHNOLOGY_LIMN = 6)
+  GLOAM_MESSAGE(BatteryState, header, voltage, temperature, current, charge, capacity,
+                design_capacity, percentage, power_supply_status, power_supply_health,
+                power_supply_technology, present, cell_voltage, cell_temperature, location,
+                serial_number)
+};
+
 }  // namespace gloam::sensor_msgs
