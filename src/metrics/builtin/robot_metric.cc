@@ -17,7 +17,7 @@ namespace {
 constexpr RobotMetricFactory kFamilies[] = {
     make_pose_metric,        make_velocity_metric, make_fall_metric,   make_visibility_metric,
     make_illuminance_metric, make_path_metric,     make_energy_metric, make_collision_metric,
-    make_slip_metric,        make_servo_metric,    make_goal_metric,
+    make_slip_metric,        make_servo_metric,    make_goal_metric,   make_electricity_metric,
 };
 
 // Reach of the robot's colliders, sideways from its base [m].

@@ -60,6 +60,7 @@ std::unique_ptr<RobotMetric> make_visibility_metric(const MetricRobot& robot);
 std::unique_ptr<RobotMetric> make_illuminance_metric(const MetricRobot& robot);
 std::unique_ptr<RobotMetric> make_path_metric(const MetricRobot& robot);
 std::unique_ptr<RobotMetric> make_energy_metric(const MetricRobot& robot);
+std::unique_ptr<RobotMetric> make_electricity_metric(const MetricRobot& robot);
 std::unique_ptr<RobotMetric> make_collision_metric(const MetricRobot& robot);
 std::unique_ptr<RobotMetric> make_slip_metric(const MetricRobot& robot);
 std::unique_ptr<RobotMetric> make_servo_metric(const MetricRobot& robot);

@@ -1,0 +1,16 @@
+#pragma once
+// The models of a robot's actuators, between its controls and MuJoCo: docs/actuators.md.
+
+#include "control/actuators/actuator_network.h"
+#include "sim/loop/actuator_layer.h"
+#include "world/world.h"
+
+namespace gloam {
+
+/// Null: the robot has no [[robot.actuator]]. Errors: of find_drives(), with the location in the
+/// scene file; those of the models come from ActuatorLayer::begin(), which has the timestep.
+Result<std::unique_ptr<ActuatorLayer>> make_actuators(
+    const CompiledWorld& world, const RobotInstance& robot,
+    ActuatorNetworkLoader load_network = load_actuator_network);
+
+}  // namespace gloam
