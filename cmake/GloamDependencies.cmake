@@ -58,9 +58,9 @@ if(RECAST_INCLUDE AND RECAST_Recast AND RECAST_Detour AND RECAST_DetourCrowd)
 endif()
 
 # MuJoCo: a user's own package is honoured; otherwise the pinned wheel holds the library, all headers and the manual.
+set(GLOAM_WHEELS ${CMAKE_SOURCE_DIR}/.venv/wheels CACHE PATH "Folder of the unpacked Python wheels")
 find_package(mujoco 4.0.1 QUIET)
 if(NOT TARGET mujoco::mujoco)
-  set(GLOAM_WHEELS ${CMAKE_SOURCE_DIR}/.venv/wheels CACHE PATH "Folder of the unpacked Python wheels")
   set(mujoco_dir ${GLOAM_WHEELS}/mujoco)
   if(NOT EXISTS ${mujoco_dir}/libmujoco.so.4.0.1)
     message(FATAL_ERROR "MuJoCo 4.0.1 is missing in ${mujoco_dir}: run ./gloam setup")
@@ -71,4 +71,19 @@ if(NOT TARGET mujoco::mujoco)
     IMPORTED_SONAME libmujoco.so.4.0.1
     INTERFACE_INCLUDE_DIRECTORIES ${mujoco_dir}/include)
   set(GLOAM_MUJOCO_DOC ${mujoco_dir}/doc CACHE PATH "MuJoCo's manual, as its wheel has it: texts and units of the schema")
+endif()
+
+# Quadratic programs of inverse kinematics, LGPL and therefore always linked as a shared library: a user's own package is
+# honoured, otherwise the pinned wheel has the library and its headers.
+find_package(eiquadprog 1.3 QUIET)
+if(NOT TARGET eiquadprog::eiquadprog)
+  set(eiquadprog_dir ${GLOAM_WHEELS}/cmeel.prefix)
+  if(NOT EXISTS ${eiquadprog_dir}/lib/libeiquadprog.so)
+    message(FATAL_ERROR "eiquadprog is missing in ${eiquadprog_dir}: run ./gloam setup")
+  endif()
+  add_library(eiquadprog::eiquadprog SHARED IMPORTED)
+  set_target_properties(eiquadprog::eiquadprog PROPERTIES
+    IMPORTED_LOCATION ${eiquadprog_dir}/lib/libeiquadprog.so
+    IMPORTED_SONAME libeiquadprog.so
+    INTERFACE_INCLUDE_DIRECTORIES ${eiquadprog_dir}/include)
 endif()

@@ -1,13 +1,13 @@
 # cmake --install FOLDER [--prefix PREFIX]: a tree that can be moved and needs neither source nor build folder.
 #   bin/gloam                  the program
 #   lib/libgloam.so            all modules as one library; include/gloam/ is its interface; find_package(gloam) finds it
-#   lib/gloam/                 MuJoCo and its plugins, Open Image Denoise (where the wheel was there)
+#   lib/gloam/                 MuJoCo and its plugins, eiquadprog, Open Image Denoise (where the wheels were there)
 #   share/gloam/               what gloam_home() is then: assets, examples
 set(CMAKE_INSTALL_LIBDIR lib)  # the same everywhere: the program looks for its own libraries there
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
-set(modules base trajectory ros mcap geometry places scene world instant sim render sensors control metrics topics record runtime report web bridge studio)
+set(modules base trajectory ros mcap geometry places scene world instant sim render sensors policy control metrics topics record runtime report web bridge studio)
 list(TRANSFORM modules PREPEND gloam_)
 add_library(gloam_library SHARED)
 foreach(module IN LISTS modules)
@@ -25,8 +25,17 @@ set_target_properties(gloam PROPERTIES INSTALL_RPATH "$ORIGIN/../${CMAKE_INSTALL
 set_target_properties(gloam gloam_library PROPERTIES BUILD_WITH_INSTALL_RPATH ON)
 get_target_property(mujoco_library mujoco::mujoco LOCATION)
 get_filename_component(mujoco_folder ${mujoco_library} DIRECTORY)
-file(MAKE_DIRECTORY ${CMAKE_BINARY_DIR}/${CMAKE_INSTALL_LIBDIR})
-file(CREATE_LINK ${mujoco_folder} ${CMAKE_BINARY_DIR}/${CMAKE_INSTALL_LIBDIR}/gloam SYMBOLIC)
+set(private_build ${CMAKE_BINARY_DIR}/${CMAKE_INSTALL_LIBDIR}/gloam)
+if(IS_SYMLINK ${private_build})  # of builds that had only MuJoCo there
+  file(REMOVE ${private_build})
+endif()
+file(MAKE_DIRECTORY ${private_build})
+get_target_property(eiquadprog_library eiquadprog::eiquadprog LOCATION)
+file(GLOB private_files ${mujoco_folder}/*)
+foreach(file IN LISTS private_files eiquadprog_library)
+  get_filename_component(name ${file} NAME)
+  file(CREATE_LINK ${file} ${private_build}/${name} SYMBOLIC)
+endforeach()
 
 install(TARGETS gloam)
 install(TARGETS gloam_library EXPORT gloam)
@@ -41,11 +50,15 @@ if(DEFINED mujoco_dir)  # from the wheel; a user's own MuJoCo stays where it is
   install(FILES ${mujoco_dir}/libmujoco.so.4.0.1 DESTINATION ${private})
   install(DIRECTORY ${mujoco_dir}/plugin DESTINATION ${private})
 endif()
+if(DEFINED eiquadprog_dir)
+  install(FILES ${eiquadprog_dir}/lib/libeiquadprog.so DESTINATION ${private})
+endif()
 file(GLOB oidn ${GLOAM_WHEELS}/pyoidn/oidn/lib/libOpenImageDenoise.so.2 ${GLOAM_WHEELS}/pyoidn/oidn/lib/libOpenImageDenoise_core.so.*
   ${GLOAM_WHEELS}/pyoidn/oidn/lib/libOpenImageDenoise_device_cpu.so.* ${GLOAM_WHEELS}/pyoidn/oidn/lib/libtbb.so.12)
 install(FILES ${oidn} DESTINATION ${private}/oidn/lib)  # they look for each other in ../lib
 install(FILES ${GLOAM_WHEELS}/coacd/lib_coacd.so DESTINATION ${private}/coacd)
 file(GLOB coacd_libs ${GLOAM_WHEELS}/coacd.libs/*.so*)
 install(FILES ${coacd_libs} DESTINATION ${private}/coacd.libs)  # where it looks for them
-install(DIRECTORY ${CMAKE_SOURCE_DIR}/assets ${CMAKE_SOURCE_DIR}/examples DESTINATION ${CMAKE_INSTALL_DATADIR}/gloam)
+install(DIRECTORY ${CMAKE_SOURCE_DIR}/assets ${CMAKE_SOURCE_DIR}/examples DESTINATION ${CMAKE_INSTALL_DATADIR}/gloam
+  PATTERN __pycache__ EXCLUDE)
 install(FILES ${CMAKE_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})

@@ -70,6 +70,8 @@ def checks():
                 "apt-get install " + " ".join(missing), needed=False)
     mujoco = ROOT / ".venv/wheels/mujoco/libmujoco.so.4.0.1"
     yield check("MuJoCo 4.0.1", mujoco.exists(), "in .venv/wheels" if mujoco.exists() else "missing", "run ./gloam setup to download it")
+    programs = ROOT / ".venv/wheels/cmeel.prefix/lib/libeiquadprog.so"
+    yield check("eiquadprog", programs.exists(), "in .venv/wheels" if programs.exists() else "missing", "run ./gloam setup to download it")
     oidn = ROOT / ".venv/wheels/pyoidn/oidn/lib/libOpenImageDenoise.so.2"
     yield check("Open Image Denoise", oidn.exists(), "in .venv/wheels" if oidn.exists() else "missing",
                 "run ./gloam setup to download it; without it, Gloam uses its own filter", needed=False)

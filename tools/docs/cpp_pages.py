@@ -8,7 +8,7 @@ from pygments.lexers import CppLexer
 
 import headers
 
-TO_DOCS = {False: "../../docs/", True: "../../../docs/"}  # from api/cpp/ and api/cpp/scene/
+TO_DOCS = {1: "../../docs/", 2: "../../../docs/"}  # from api/cpp/ and from its folders
 
 
 def prose(text, to_docs):
@@ -49,7 +49,7 @@ class Pages:
 
     def members(self, declarations, header):
         """A list of definitions: code, then its comment."""
-        to_docs, parts = TO_DOCS["/scene/" in header], []
+        to_docs, parts = TO_DOCS[header.count("/")], []
         for declaration in declarations:
             if not declaration.code:
                 parts.append(f'<dd class="remark">{prose(declaration.text, to_docs)}</dd>')
@@ -63,7 +63,7 @@ class Pages:
 
     def text(self, header):
         introduction, declarations = self.parsed[header]
-        to_docs, parts, last = TO_DOCS["/scene/" in header], [], None
+        to_docs, parts, last = TO_DOCS[header.count("/")], [], None
         for declaration in declarations:
             if not declaration.code:
                 parts.append(prose(declaration.text, to_docs))
@@ -80,7 +80,7 @@ class Pages:
 
     def write(self, folder):
         """Writes all pages and an index; returns them for the navigation."""
-        rows, nav, scene = [], [], []
+        rows, nav, folders = [], [], {}
         for header, (introduction, _) in self.parsed.items():
             page = folder / f"{self.page_of(header)}.md"
             page.parent.mkdir(parents=True, exist_ok=True)
@@ -88,7 +88,8 @@ class Pages:
             first = re.split(r"(?<=\.)\s", introduction.replace("\n", " "), maxsplit=1)[0]
             rows.append(f"* [{header}]({self.page_of(header)}.md): {html.escape(first, quote=False)}")
             entry = {header.split("/")[-1]: f"api/cpp/{self.page_of(header)}.md"}
-            (scene if "/scene/" in header else nav).append(entry)
+            *_, parent, _ = header.split("/")
+            (nav if parent == "gloam" else folders.setdefault(f"{parent}/", [])).append(entry)
         (folder / "README.md").write_text("# C++ reference\n\nThe public headers. [docs/library.md](../../docs/library.md) is the guide.\n\n"
                                           + "\n".join(rows) + "\n")
-        return [*nav, {"scene/": scene}]
+        return [*nav, *({name: entries} for name, entries in folders.items())]
