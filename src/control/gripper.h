@@ -1,0 +1,18 @@
+#pragma once
+// Controller "gripper": opens and closes fingers together, with a limited force.
+
+#include <memory>
+
+#include "gloam/controller.h"
+#include "gloam/result.h"
+#include "world/world.h"
+
+namespace gloam {
+
+/// Drives all of a robot's (or part's) driven joints with limits between closed and open. A
+/// SetJointGoal of one of them moves all of them to the same fraction of their ranges. Errors: no
+/// driven joint with limits.
+Result<std::unique_ptr<Controller>> make_gripper_controller(const CompiledWorld& world,
+                                                            const RobotInstance& robot);
+
+}  // namespace gloam
