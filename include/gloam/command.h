@@ -9,6 +9,7 @@
 #include <variant>
 #include <vector>
 
+#include "gloam/joints/joint_command.h"
 #include "gloam/result.h"
 #include "gloam/types.h"
 #include "gloam/world.h"
@@ -31,16 +32,17 @@ struct SetControls {
   Robot robot;
   std::vector<double> values;
 };
-/// Velocity goal of the robot's controller, in its heading frame [m/s, m/s, rad/s].
+/// Velocity goal of the robot's controller, in its heading frame [m/s, m/s, rad/s, m/s].
 struct SetVelocityGoal {
   Robot robot = {0, 0};
   double vx = 0, vy = 0, yaw_rate = 0;
+  double vz = 0;  ///< up; of flying robots only
 };
-/// Goal position of a hinge or slide joint for the robot's controller [rad, m]; stays until
-/// changed. The controller "joint_position" uses it instead of its target.
-struct SetJointGoal {
-  Joint joint;
-  double position = 0;
+/// Goal pose of the frame that the robot's controller controls, in the world; stays until changed.
+/// The controllers "ik" and "osc" use it instead of the pose that the frame has at the start.
+struct SetPoseGoal {
+  Robot robot = {0, 0};
+  Pose X_WF;
 };
 /// Pose of a mocap body.
 struct SetMocapPose {
@@ -114,7 +116,8 @@ struct Command {
   static constexpr int64_t kNextStep = -1;
   int64_t step = kNextStep;  ///< applies before this step
   std::variant<SetControl, SetVelocityGoal, SetMocapPose, SetWrench, AddVelocity, DragBody,
-               ResetSim, SetLiveField, SetJointState, SetControls, SetJointGoal>
+               ResetSim, SetLiveField, SetJointState, SetControls, SetJointGoal, SetJointCommand,
+               SetController, FollowTrajectory, StopTrajectory, SetPoseGoal>
       what;
 };
 

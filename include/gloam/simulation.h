@@ -83,9 +83,9 @@ class Simulation {
   /// Error: the repeated run reached another state (step hooks are not repeated); the simulation is
   /// then unchanged.
   virtual Status restore(const Checkpoint& checkpoint) = 0;
-  /// Gives the caller exclusive control of a robot until the lease is destroyed: SetControl,
-  /// SetControls, SetVelocityGoal and SetJointGoal from others return an Error. Error: the robot is
-  /// already claimed.
+  /// Gives the caller exclusive control of a robot until the lease is destroyed: Commands
+  /// for it, its joints or its actuators from others return an Error. Error: the robot is already
+  /// claimed.
   virtual Result<std::unique_ptr<ControlLease>> claim(Robot robot) = 0;
   /// Commands that were applied since the last call, in order, with the step at which they were
   /// applied.

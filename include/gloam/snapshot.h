@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "gloam/actuators.h"
+#include "gloam/joints/joint_trajectory.h"
 #include "gloam/result.h"
 #include "gloam/types.h"
 #include "gloam/world.h"
@@ -47,7 +49,13 @@ class Snapshot {
 
   JointState operator[](Joint joint) const;
   SensorState operator[](SensorHandle sensor) const;
-  double control(Actuator actuator) const;  ///< the first value if there are several
+  /// The commanded control, the first value if there are several.
+  double control(Actuator actuator) const;
+  /// The trajectory of a robot, from its first step until another Command ends it; stays after its
+  /// last point. Null: none.
+  std::shared_ptr<const ActiveTrajectory> trajectory(Robot robot) const;
+  /// Valid as long as the Snapshot. Null: the robot has no actuator models, or this is a replay.
+  const ActuatorOutputs* actuators(Robot robot) const;
 
   World world() const;  ///< World of this instant; a recompile replaces it
 

@@ -2,13 +2,22 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <map>
 #include <mutex>
 
 #include "base/text.h"
-#include "control/joint_position.h"
+#include "control/actuators/actuators.h"
+#include "control/drive/diff_drive.h"
+#include "control/flight/quadrotor.h"
+#include "control/gripper.h"
+#include "control/inverse_kinematics.h"
+#include "control/joint_controller.h"
+#include "control/operational_space.h"
+#include "control/parted_controller.h"
 #include "control/torque.h"
 #include "control/trot.h"
+#include "policy/policy_controller.h"
 #include "scene/options/controller_types.h"
 
 namespace gloam {
@@ -22,11 +31,24 @@ Result<std::unique_ptr<Controller>> make_none(const CompiledWorld&, const RobotI
 }
 
 // Gloam's own; names and options are in scene/options/controller_types.cc.
-constexpr std::pair<std::string_view, OwnFactory> kControllers[] = {
+struct OwnController {
+  std::string_view name;
+  OwnFactory make;
+  bool is_logged = false;  // ControllerTraits
+};
+constexpr OwnController kControllers[] = {
     {"none", make_none},
     {"torque", make_torque_controller},
     {"joint_position", make_joint_position_controller},
     {"trot", make_trot_controller},
+    {"quadrotor", make_quadrotor_controller},
+    {"diff_drive", make_diff_drive_controller},
+    {"gripper", make_gripper_controller},
+    {"joint_velocity", make_joint_velocity_controller},
+    {"joint_effort", make_joint_effort_controller},
+    {"ik", make_inverse_kinematics_controller},
+    {"osc", make_operational_space_controller},
+    {"policy", make_policy_controller, true},
 };
 
 struct RegisteredControllers {
@@ -62,15 +84,55 @@ std::vector<std::string> controller_types() {
   return {names.begin(), names.end()};
 }
 
+bool has_logged_controls(const ControllerOptions& options) {
+  return std::ranges::any_of(kControllers, [&](const OwnController& own) {
+    return own.is_logged && own.name == options.type;
+  });
+}
+
 Result<std::unique_ptr<Controller>> make_controller(
     const std::shared_ptr<const CompiledWorld>& world, const RobotInstance& robot) {
   const ControllerOptions& options = robot.options.controller;
-  for (const auto& [name, make] : kControllers)
-    if (options.type == name) return make(*world, robot);
+  for (const OwnController& own : kControllers)
+    if (options.type == own.name) return own.make(*world, robot);
   if (const ControllerFactory make = find_registered(options.type))
     return make({World(world), robot.options});
   return Error{ErrorKind::kInput, fmt::format("unknown controller '{}'", options.type), options.loc,
                suggest_name(options.type, controller_types())};
+}
+
+Result<std::unique_ptr<Controller>> make_robot_controller(
+    const std::shared_ptr<const CompiledWorld>& world, int robot,
+    const ControllerOptions& options) {
+  RobotInstance changed = world->robots[static_cast<size_t>(robot)];
+  changed.options.controller = options;
+  return changed.options.parts.empty() ? make_controller(world, changed)
+                                       : make_parted_controller(world, changed);
+}
+
+namespace {
+
+Result<std::unique_ptr<ActuatorLayer>> make_own_actuators(const CompiledWorld& world,
+                                                          const RobotInstance& robot) {
+  return make_actuators(world, robot);
+}
+
+}  // namespace
+
+RobotMakers robot_makers() { return {make_robot_controller, make_own_actuators}; }
+
+RobotMakers replay_makers() {
+  const ControllerMaker make =
+      [](const std::shared_ptr<const CompiledWorld>& world, int robot,
+         const ControllerOptions& options) -> Result<std::unique_ptr<Controller>> {
+    // The controls of all parts are logged if those of one are (PartedController::traits).
+    bool is_logged = has_logged_controls(options);
+    for (const RobotPart& part : world->robots[static_cast<size_t>(robot)].options.parts)
+      is_logged = is_logged || has_logged_controls(part.controller);
+    if (is_logged) return std::unique_ptr<Controller>();
+    return make_robot_controller(world, robot, options);
+  };
+  return {make, make_own_actuators};
 }
 
 }  // namespace gloam

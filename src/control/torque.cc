@@ -13,12 +13,8 @@ class TorqueController final : public Controller {
  public:
   TorqueController(std::vector<DrivenJoint> motors, const std::vector<double>& torques)
       : motors_(std::move(motors)), controls_(motors_.size()) {
-    for (size_t i = 0; i < torques.size(); ++i) {
-      const DrivenJoint& motor = motors_[i];
-      const double force =
-          std::clamp(torques[i] / motor.gear, motor.force_lowest, motor.force_highest);
-      controls_[i] = std::clamp(force / motor.gain, motor.lowest, motor.highest);
-    }
+    for (size_t i = 0; i < torques.size(); ++i)
+      controls_[i] = control_of_torque(motors_[i], torques[i]);
   }
 
   void reset(const mjModel*, const mjData*) override { started_ = false; }

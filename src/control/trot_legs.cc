@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "control/trot_names.h"
 #include "world/model_memory.h"
 #include "world/world.h"
 
@@ -87,12 +88,22 @@ Status find_motor(const mjModel& m, int joint, int i, Leg& leg) {
                .hint = "add <motor joint=\"" + joint_name + "\" ctrlrange=\"…\"/>"};
 }
 
-/// The foot: of the last link's collision geoms, the one that reaches farthest from the calf axis.
-Status find_foot(const mjModel& m, const mjData& d, int calf_body, const Matrix3d& R_WB,
-                 const Vector3d& p_WB, Leg& leg) {
+/// Pose of the base in the world.
+struct BasePose {
+  Matrix3d R_WB;
+  Vector3d p_WB;
+  Vector3d in_base(const Vector3d& p_W) const { return R_WB.transpose() * (p_W - p_WB); }
+};
+
+/// The foot: of the last link's collision geoms, the one that reaches farthest from the calf axis;
+/// of those that are `named`, if any.
+Status find_foot(const mjModel& m, const mjData& d, int calf_body, const BasePose& X_WB,
+                 const NamedFoot& named, Leg& leg) {
   double best = -1;
   for (int g = 0; g < m.ngeom; ++g) {
     if (m.body_weldid[m.geom_bodyid[g]] != m.body_weldid[calf_body]) continue;
+    if (named.geom >= 0 && g != named.geom) continue;
+    if (named.body >= 0 && m.geom_bodyid[g] != named.body) continue;
     if (m.geom_contype[g] == 0 && m.geom_conaffinity[g] == 0) continue;
     const Vector3d center = vec(d.geom_xpos + 3 * g);
     const Vector3d along = mat(d.geom_xmat + 9 * g).col(2);
@@ -103,7 +114,7 @@ Status find_foot(const mjModel& m, const mjData& d, int calf_body, const Matrix3
       half = m.geom_size[3 * g + 1];
     }
     for (const double end : {-half, half}) {
-      const Vector3d p_B = R_WB.transpose() * (center + end * along - p_WB);
+      const Vector3d p_B = X_WB.in_base(center + end * along);
       const double distance = (p_B - leg.anchor_B[2]).norm() +
                               (m.geom_type[g] == mjGEOM_SPHERE ? radius : 0.5 * radius);
       if (distance <= best) continue;
@@ -118,7 +129,31 @@ Status find_foot(const mjModel& m, const mjData& d, int calf_body, const Matrix3
                  .message = "body '" + name_of(m, mjOBJ_BODY, calf_body) +
                             "' has no collision geom to stand on",
                  .hint = "add a sphere at the end of each leg"};
+  if (named.site >= 0) {
+    leg.foot_B = X_WB.in_base(vec(d.site_xpos + 3 * named.site));
+    leg.foot_radius = m.site_size[3 * named.site];
+  }
   return {};
+}
+
+/// Chains of three hinges below the base: the last has exactly two between it and the base, and
+/// none below it.
+std::vector<std::array<int, 3>> find_chains(const mjModel& m, int base_body) {
+  std::vector<std::array<int, 3>> chains;
+  for (int j = 0; j < m.njnt; ++j) {
+    const int body = m.jnt_bodyid[j];
+    if (m.jnt_type[j] != mjJNT_HINGE || !is_below(m, body, base_body)) continue;
+    std::vector<int> joints;
+    for (int b = body; b > base_body; b = m.body_parentid[b])
+      for (int k = m.body_jntnum[b] - 1; k >= 0; --k) joints.push_back(m.body_jntadr[b] + k);
+    bool last = true;
+    for (int other = 0; other < m.njnt; ++other)
+      if (other != j && m.jnt_bodyid[other] != body && is_below(m, m.jnt_bodyid[other], body))
+        last = false;
+    if (last && joints.size() == 3 && joints[0] == j)
+      chains.push_back({joints[2], joints[1], joints[0]});
+  }
+  return chains;
 }
 
 }  // namespace
@@ -150,26 +185,18 @@ Result<Quadruped> find_quadruped(const mjModel& m, const RobotInstance& robot) {
   const Matrix3d R_WB = mat(d.xmat + 9 * out.base_body);
   const Vector3d p_WB = vec(d.xpos + 3 * out.base_body);
 
-  // A leg's last joint is a hinge with exactly two hinges between it and the base, none below it.
+  GLOAM_TRY(const NamedLegs named, named_legs(m, robot));
   std::vector<std::array<int, 3>> chains;
-  for (int j = 0; j < m.njnt; ++j) {
-    const int body = m.jnt_bodyid[j];
-    if (m.jnt_type[j] != mjJNT_HINGE || !is_below(m, body, out.base_body)) continue;
-    std::vector<int> joints;
-    for (int b = body; b > out.base_body; b = m.body_parentid[b])
-      for (int k = m.body_jntnum[b] - 1; k >= 0; --k) joints.push_back(m.body_jntadr[b] + k);
-    bool last = true;
-    for (int other = 0; other < m.njnt; ++other)
-      if (other != j && m.jnt_bodyid[other] != body && is_below(m, m.jnt_bodyid[other], body))
-        last = false;
-    if (last && joints.size() == 3 && joints[0] == j)
-      chains.push_back({joints[2], joints[1], joints[0]});
-  }
+  if (named.joints)
+    chains.assign(named.joints->begin(), named.joints->end());
+  else
+    chains = find_chains(m, out.base_body);
   if (chains.size() != 4)
     return not_a_quadruped("it has " + std::to_string(chains.size()) + " legs of three joints");
 
   std::array<bool, 4> taken{};
-  for (const auto& chain : chains) {
+  for (size_t c = 0; c < chains.size(); ++c) {
+    const auto& chain = chains[c];
     Leg leg;
     for (int i = 0; i < 3; ++i) {
       const int j = chain[i], dof = m.jnt_dofadr[j];
@@ -191,9 +218,15 @@ Result<Quadruped> find_quadruped(const mjModel& m, const RobotInstance& robot) {
       leg.inertia_B[i] = link.inertia;
       GLOAM_TRY_STATUS(find_motor(m, j, i, leg));
     }
-    GLOAM_TRY_STATUS(find_foot(m, d, m.jnt_bodyid[chain[2]], R_WB, p_WB, leg));
+    const int corner = (leg.anchor_B[0].x() > 0 ? 0 : 2) + (leg.anchor_B[0].y() > 0 ? 0 : 1);
+    const int slot = named.joints ? static_cast<int>(c) : corner;
+    const int calf = m.jnt_bodyid[chain[2]];
+    const NamedFoot foot = named.feet ? (*named.feet)[slot] : NamedFoot{.carrier = calf};
+    if (m.body_weldid[foot.carrier] != m.body_weldid[calf])
+      return not_a_quadruped("the foot '" + robot.options.joints.feet[slot] +
+                             "' is not on the last link of its leg");
+    GLOAM_TRY_STATUS(find_foot(m, d, calf, {R_WB, p_WB}, foot, leg));
     leg.length = (leg.anchor_B[2] - leg.anchor_B[1]).norm() + (leg.foot_B - leg.anchor_B[2]).norm();
-    const int slot = (leg.anchor_B[0].x() > 0 ? 0 : 2) + (leg.anchor_B[0].y() > 0 ? 0 : 1);
     if (taken[slot]) return not_a_quadruped("its hips are not at four corners around the base");
     taken[slot] = true;
     out.leg_length += leg.length / 4;

@@ -10,6 +10,7 @@
 #include <thread>
 
 #include "base/log.h"
+#include "control/actuators/actuators.h"
 #include "control/controllers.h"
 #include "geometry/mesh/single.h"
 #include "runtime/label_table.h"
@@ -32,19 +33,6 @@ double wall_seconds() {
 
 }  // namespace
 
-Result<std::vector<RobotController>> make_controllers(
-    const std::shared_ptr<const CompiledWorld>& world) {
-  std::vector<RobotController> controllers;
-  for (size_t i = 0; i < world->robots.size(); ++i) {
-    const RobotInstance& robot = world->robots[i];
-    if (robot.options.controller.type == "none") continue;
-    GLOAM_TRY(auto controller, make_controller(world, robot));
-    controllers.push_back(
-        {static_cast<int>(i), std::move(controller), robot.options.controller.rate});
-  }
-  return controllers;
-}
-
 Result<std::unique_ptr<Simulation>> Simulation::create(const World& world,
                                                        const SimulationOptions& options) {
   GLOAM_TRY(auto live, LiveSimulation::create(world, options));
@@ -61,14 +49,15 @@ Result<std::unique_ptr<LiveSimulation>> LiveSimulation::create(const World& worl
   core.pace = live->pace_ = options.pace;
   core.speed = options.speed;
   core.make_data = options.make_data;
+  core.makers = robot_makers();
   core.command_capacity += static_cast<int>(std::min(how.commands, size_t{1} << 19));
   GLOAM_TRY(live->simulator_, Simulator::create(world.compiled(), core));
   if (how.motion != nullptr) {
     GLOAM_TRY_STATUS(live->simulator_->follow(std::move(how.motion), how.end));
   } else {
-    GLOAM_TRY(auto controllers, make_controllers(world.compiled()));
+    GLOAM_TRY(auto controllers, make_controllers(world.compiled(), robot_makers()));
     for (RobotController& c : controllers)
-      GLOAM_TRY_STATUS(live->simulator_->add_controller(c.robot, std::move(c.controller), c.rate));
+      GLOAM_TRY_STATUS(live->simulator_->add_robot(std::move(c)));
   }
   // Exposure runs from step 0, whether or not anyone opens the camera.
   if (how.metering == Metering::kAlways)
@@ -83,7 +72,7 @@ Result<std::unique_ptr<LiveSimulation>> LiveSimulation::create(const World& worl
 // it when the first Snapshot of the new World comes to them.
 Status LiveSimulation::recompile(const World& world) {
   const std::lock_guard one_at_a_time(recompile_mutex_);
-  GLOAM_TRY(auto controllers, make_controllers(world.compiled()));
+  GLOAM_TRY(auto controllers, make_controllers(world.compiled(), robot_makers()));
   if (renderers_.any()) GLOAM_TRY_STATUS(renderers_.of(world.compiled()));
   const Status status = simulator_->recompile(world.compiled(), std::move(controllers));
   forget_other_worlds();
@@ -114,7 +103,7 @@ Status LiveSimulation::restore(const Checkpoint& checkpoint) {
   const auto& world = checkpoint.data().record.chapters.back().world;
   const bool is_other = world != simulator_->world();
   if (renderers_.any()) GLOAM_TRY_STATUS(renderers_.of(world));
-  const Status status = simulator_->restore(checkpoint.data(), make_controllers);
+  const Status status = simulator_->restore(checkpoint.data());
   forget_other_worlds();
   GLOAM_TRY_STATUS(status);
   restart_speed_clock();

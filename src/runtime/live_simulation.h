@@ -23,10 +23,6 @@ namespace gloam {
 
 class TopicFeed;
 
-/// Makes the controllers of all robots of a World, as their options say.
-Result<std::vector<RobotController>> make_controllers(
-    const std::shared_ptr<const CompiledWorld>& world);
-
 /// Choice whether automatic exposures go on while nobody opens their cameras, which takes
 /// rendering.
 enum class Metering : uint8_t { kAlways, kNever };

@@ -26,7 +26,7 @@ int driven_robot(const CompiledWorld& world, const Command& command) {
   return std::visit(
       [&world](const auto& what) {
         using T = std::decay_t<decltype(what)>;
-        if constexpr (std::is_same_v<T, SetControls> || std::is_same_v<T, SetVelocityGoal>) {
+        if constexpr (requires { what.robot; }) {
           return what.robot.id;
         } else if constexpr (std::is_same_v<T, SetControl>) {
           return owner_of(world, what.actuator.id, robot_actuators);

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/nesting.h"
+#include "gloam/controller.h"
 #include "sim/commands/live_fields.h"
 
 namespace gloam {
@@ -29,6 +30,10 @@ class Writer {
     if (name != nullptr && *name != 0) json_["name"] = name;
   }
   void value(const char* key, double v) { json_[key] = v; }
+  /// A key that logs of earlier versions lack: left out while it is zero.
+  void added(const char* key, double v) {
+    if (v != 0) json_[key] = v;
+  }
   void value(const char* key, int v) { json_[key] = v; }
   void value(const char* key, bool v) { json_[key] = v; }
   void value(const char* key, const Vec3& v) { json_[key] = numbers(v); }
@@ -36,9 +41,20 @@ class Writer {
     json_[key] = {{"p", numbers(X.p)}, {"q", {X.q.w, X.q.x, X.q.y, X.q.z}}};
   }
   void value(const char* key, const LiveFieldId& v) { json_[key] = live_field_name(v); }
+  void value(const char* key, const ControllerOptions& v) { json_[key] = to_toml(v); }
+  void value(const char* key, const TrajectoryProfile& v) { json_[key] = profile_name(v); }
   template <class T>
   void value(const char* key, const std::vector<T>& v) {
     json_[key] = v;
+  }
+  void value(const char* key, const std::vector<Joint>& v) {
+    Json& ids = json_[key] = Json::array();
+    for (const Joint joint : v) ids.push_back(joint.id);
+  }
+  void value(const char* key, const std::vector<TrajectoryPoint>& v) {
+    Json& points = json_[key] = Json::array();
+    for (const TrajectoryPoint& point : v)
+      points.push_back({point.time, point.positions, point.velocities, point.accelerations});
   }
 
  private:
@@ -54,6 +70,7 @@ class Reader {
     handle = {json_.at(key).get<int>(), 0};
   }
   void value(const char* key, double& v) { v = json_.at(key).get<double>(); }
+  void added(const char* key, double& v) { v = json_.value(key, 0.0); }
   void value(const char* key, int& v) { v = json_.at(key).get<int>(); }
   void value(const char* key, bool& v) { v = json_.at(key).get<bool>(); }
   void value(const char* key, Vec3& v) { v = vec3(json_.at(key)); }
@@ -67,9 +84,36 @@ class Reader {
     if (!field.ok()) throw std::out_of_range(fmt::format("there is no live field '{:.40}'", name));
     v = *field;
   }
+  void value(const char* key, ControllerOptions& v) {
+    Result<ControllerOptions> options = parse_controller(json_.at(key).get<std::string>());
+    if (!options.ok()) throw std::out_of_range(options.error().to_string());
+    v = std::move(*options);
+  }
+  void value(const char* key, TrajectoryProfile& v) {
+    const Result<TrajectoryProfile> profile = profile_named(json_.at(key).get<std::string>());
+    if (!profile.ok()) throw std::out_of_range(profile.error().to_string());
+    v = *profile;
+  }
   template <class T>
   void value(const char* key, std::vector<T>& v) {
     v = json_.at(key).get<std::vector<T>>();
+  }
+  // JSON has no NaN: null.
+  void value(const char* key, std::vector<double>& v) {
+    v.clear();
+    for (const Json& number : json_.at(key))
+      v.push_back(number.is_null() ? JointTarget::kNone : number.get<double>());
+  }
+  void value(const char* key, std::vector<Joint>& v) {
+    v.clear();
+    for (const Json& id : json_.at(key)) v.push_back({id.get<int>(), 0});
+  }
+  void value(const char* key, std::vector<TrajectoryPoint>& v) {
+    using Numbers = std::vector<double>;
+    v.clear();
+    for (const Json& point : json_.at(key))
+      v.push_back({point.at(0).get<double>(), point.at(1).get<Numbers>(),
+                   point.at(2).get<Numbers>(), point.at(3).get<Numbers>()});
   }
 
  private:
@@ -85,6 +129,7 @@ template <class V>
 void visit(V& v, auto& c, const SetVelocityGoal*) {
   v.handle("robot", c.robot, mjOBJ_UNKNOWN);
   v.value("vx", c.vx), v.value("vy", c.vy), v.value("yaw_rate", c.yaw_rate);
+  v.added("vz", c.vz);
 }
 template <class V>
 void visit(V& v, auto& c, const SetMocapPose*) {
@@ -121,12 +166,39 @@ template <class V>
 void visit(V& v, auto& c, const SetJointGoal*) {
   v.handle("joint", c.joint, mjOBJ_JOINT), v.value("position", c.position);
 }
+template <class V>
+void visit(V& v, auto& c, const SetPoseGoal*) {
+  v.handle("robot", c.robot, mjOBJ_UNKNOWN), v.value("pose", c.X_WF);
+}
+
+template <class V>
+void visit(V& v, auto& c, const SetJointCommand*) {
+  v.handle("robot", c.robot, mjOBJ_UNKNOWN), v.value("joints", c.joints);
+  v.value("position", c.position), v.value("velocity", c.velocity), v.value("effort", c.effort);
+  v.value("kp", c.kp), v.value("kd", c.kd);
+}
+template <class V>
+void visit(V& v, auto& c, const SetController*) {
+  v.handle("robot", c.robot, mjOBJ_UNKNOWN), v.value("controller", c.controller);
+}
+template <class V>
+void visit(V& v, auto& c, const FollowTrajectory*) {
+  v.handle("robot", c.robot, mjOBJ_UNKNOWN), v.value("joints", c.joints);
+  v.value("profile", c.trajectory.profile), v.value("points", c.trajectory.points);
+  v.value("max_velocity", c.trajectory.max_velocity);
+  v.value("max_acceleration", c.trajectory.max_acceleration);
+}
+template <class V>
+void visit(V& v, auto& c, const StopTrajectory*) {
+  v.handle("robot", c.robot, mjOBJ_UNKNOWN);
+}
 
 using What = decltype(Command::what);
-constexpr const char* kNames[] = {"set_control",  "set_velocity_goal", "set_mocap_pose",
-                                  "set_wrench",   "add_velocity",      "drag_body",
-                                  "reset",        "set_live_field",    "set_joint_state",
-                                  "set_controls", "set_joint_goal"};
+constexpr const char* kNames[] = {
+    "set_control",     "set_velocity_goal", "set_mocap_pose",  "set_wrench",
+    "add_velocity",    "drag_body",         "reset",           "set_live_field",
+    "set_joint_state", "set_controls",      "set_joint_goal",  "set_joint_command",
+    "set_controller",  "follow_trajectory", "stop_trajectory", "set_pose_goal"};
 static_assert(std::size(kNames) == std::variant_size_v<What>);
 
 template <size_t I = 0>

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "control/controllers.h"
 #include "runtime/live_simulation.h"
 #include "sim/state/state_transfer.h"
 
@@ -25,7 +26,8 @@ Result<std::unique_ptr<LoggedMotion>> LoggedMotion::create(
     return Error{ErrorKind::kUnsupported,
                  "the run started from a checkpoint or was recompiled: its motion cannot be "
                  "replayed in another World"};
-  GLOAM_TRY(auto restepper, Restepper::create(run.record, make_controllers));
+  GLOAM_TRY(auto restepper,
+            Restepper::create(run.record, run.has_history ? robot_makers() : replay_makers()));
   const CompiledWorld& from = *run.record.chapters.front().world;
   return std::unique_ptr<LoggedMotion>(
       new LoggedMotion(std::move(restepper), from, world, run.last_step, run.record.hash));

@@ -128,6 +128,7 @@ class RunReader {
     for (const LoggedWorld& world : worlds_) {
       if (world.text.run != number) continue;
       if (run->same_bits.ok()) run->same_bits = world.same_bits;
+      run->has_history |= world.text.has_history;
       run->has_beginning |= world.text.has_history;
       if (world.text.step > 0) record.chapters.push_back({world.world, world.text.step});
     }

@@ -18,6 +18,8 @@ struct LoggedRuns {
     RunRecord record;
     int64_t first_step = -1, last_step = 0;  ///< of states that were logged
     bool has_beginning = false;              ///< its Commands are logged from its initial state on
+    /// Part of it was before the log, which lacks what step hooks and logged controllers did then.
+    bool has_history = false;
     int64_t number = 0;  ///< resets and checkpoints before it, in the simulation
     Status same_bits;    ///< why it cannot be stepped again to the bit, if so
   };

@@ -6,6 +6,7 @@
 #include <chrono>
 #include <cmath>
 
+#include "control/controllers.h"
 #include "gloam/log.h"
 #include "ros/codec.h"
 #include "ros/messages/gloam_msgs.h"
@@ -121,7 +122,8 @@ class Verifier {
           "run {} started from a checkpoint, not from the scene, and was not verified", number));
       return {};
     }
-    GLOAM_TRY(stepper_, Restepper::create(run.record, make_controllers));
+    GLOAM_TRY(stepper_,
+              Restepper::create(run.record, run.has_history ? robot_makers() : replay_makers()));
     ++found_.runs;
     return {};
   }

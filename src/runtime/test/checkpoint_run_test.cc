@@ -73,6 +73,7 @@ TEST_F(ClaimedRobots, AreTheirHoldersAlone) {
   EXPECT_FALSE(simulation_->post({.what = SetControl{left.actuators[0], 1}}).ok());
   EXPECT_FALSE(simulation_->post({.what = SetJointGoal{left.joints[0], 1}}).ok());
   EXPECT_FALSE(simulation_->post({.what = SetVelocityGoal{left.robot, 1, 0, 0}}).ok());
+  EXPECT_FALSE(simulation_->post({.what = SetPoseGoal{left.robot, {}}}).ok());
   EXPECT_TRUE(simulation_->post(control(1)).ok());
   EXPECT_TRUE(lease->post(control(0)).ok());
   EXPECT_FALSE(simulation_->claim(left.robot).ok());

@@ -120,7 +120,7 @@ TEST(LiveLidar, AnUnknownNameOrBodyIsRefused) {
   ASSERT_TRUE(scene.ok());
   const auto world = World::compile(*scene);
   ASSERT_FALSE(world.ok());
-  EXPECT_NE(world.error().to_string().find("no body 'bal'"), std::string::npos);
+  EXPECT_NE(world.error().to_string().find("no body or site 'bal'"), std::string::npos);
 }
 
 TEST(LiveLidar, KeysFallOnStepsWhereTheyCan) {

@@ -260,7 +260,15 @@ TEST_F(Logs, CommandsAreReadBackToTheBit) {
       SetLiveField{LiveFieldId::kBodyMass, 1, {0.1, 3.3}},
       SetJointState{{1, serial}, {0.7}, {}},
       SetControls{{0, serial}, {0.25}},
-      SetJointGoal{{1, serial}, 0.3}};
+      SetJointGoal{{1, serial}, 0.3},
+      SetJointCommand{{0, serial}, {{1, serial}}, {0.1}, {}, {JointTarget::kNone}, {3}, {1.0 / 3}},
+      SetController{{0, serial},
+                    {.type = "joint_position", .rate = {250, 1}, .kp = 1.0 / 3, .target = {0.1}}},
+      FollowTrajectory{{0, serial},
+                       {{1, serial}},
+                       {TrajectoryProfile::kQuintic, {{0, {0.1}}, {0, {0.2}}}, {1.0 / 3}, {2}}},
+      StopTrajectory{{0, serial}},
+      SetPoseGoal{{0, serial}, {{0.1, 0.2, 0.3}, {0, 0.6, 0.8, 0}}}};
   ASSERT_EQ(all.size(), std::variant_size_v<decltype(Command::what)>);
   for (const auto& what : all) {
     const std::string text = command_text({2, {17, what}}, compiled);
@@ -270,9 +278,14 @@ TEST_F(Logs, CommandsAreReadBackToTheBit) {
     EXPECT_EQ(again->command.step, 17);
     EXPECT_EQ(command_text(*again, compiled), text);
   }
-  for (const char* bad : {"", "{}", "[]", R"({"run":0,"step":0,"command":"fly"})",
-                          R"({"run":0,"step":0,"command":"set_control","actuator":"x","value":1})",
-                          R"({"run":0,"step":0,"command":"set_control","actuator":0})"})
+  for (
+      const char* bad :
+      {"", "{}", "[]", R"({"run":0,"step":0,"command":"fly"})",
+       R"({"run":0,"step":0,"command":"set_control","actuator":"x","value":1})",
+       R"({"run":0,"step":0,"command":"set_control","actuator":0})",
+       R"({"run":0,"step":0,"command":"set_controller","robot":0,"controller":"type = 'x'"})",
+       R"({"run":0,"step":0,"command":"follow_trajectory","robot":0,"joints":[1],"profile":"round","points":[],"max_velocity":[],"max_acceleration":[]})",
+       R"({"run":0,"step":0,"command":"follow_trajectory","robot":0,"joints":[1],"profile":"spline","points":[[1]],"max_velocity":[],"max_acceleration":[]})"})
     EXPECT_FALSE(parse_command(bad).ok()) << bad;
   for (const char* bad : {"", "{}", "[1]", R"({"run":0})"}) EXPECT_FALSE(parse_run_text(bad).ok());
 }

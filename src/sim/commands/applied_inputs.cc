@@ -11,7 +11,8 @@ namespace gloam {
 AppliedInputs::AppliedInputs(const CompiledWorld& world, const mjModel& model)
     : wrench_(static_cast<size_t>(6 * model.nbody)),
       jacobian_(static_cast<size_t>(3 * model.nv)),
-      solved_(static_cast<size_t>(3 * model.nv)) {
+      solved_(static_cast<size_t>(3 * model.nv)),
+      joints_(world, model) {
   drags_.reserve(static_cast<size_t>(model.nbody));
   for (const RobotInstance& robot : world.robots) {
     std::vector<int>& controls = controls_.emplace_back();
@@ -31,11 +32,13 @@ void AppliedInputs::take_over(const AppliedInputs& before, const Correspondence&
       drags_.push_back(drag);
     }
   }
+  joints_.take_over(before.joints_, same);
 }
 
 void AppliedInputs::reset() {
   std::fill(wrench_.begin(), wrench_.end(), 0.0);
   drags_.clear();
+  joints_.reset();
 }
 
 void AppliedInputs::apply(const mjModel& model, mjData& data, const SetControl& command) {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "gloam/command.h"
+#include "sim/joints/joint_inputs.h"
 #include "sim/state/correspondence.h"
 
 namespace gloam {
@@ -28,6 +29,14 @@ class AppliedInputs {
   void apply(const mjModel& model, mjData& data, const SetWrench& command);
   void apply(const mjModel& model, mjData& data, const AddVelocity& command);
   void apply(const mjModel& model, mjData& data, const DragBody& command);
+  void apply(const mjModel&, mjData&, const SetJointGoal& command) { joints_.apply(command); }
+  void apply(const mjModel&, mjData&, const SetJointCommand& command) { joints_.apply(command); }
+  void apply(const mjModel& model, mjData& data, const StopTrajectory& command) {
+    joints_.stop(command.robot.id, model, data);
+  }
+
+  JointInputs& joints() { return joints_; }
+  const JointInputs& joints() const { return joints_; }
 
   /// Pulls dragged bodies; call before every step. MuJoCo errors possible: call it guarded.
   void before_step(const mjModel& model, mjData& data);
@@ -45,6 +54,7 @@ class AppliedInputs {
   std::vector<double> wrench_;              // by SetWrench: force, torque [N, N m], (nbody x 6)
   std::vector<Drag> drags_;                 // at most one per body
   std::vector<double> jacobian_, solved_;   // (3 x nv) each
+  JointInputs joints_;
 };
 
 }  // namespace gloam

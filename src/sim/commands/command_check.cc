@@ -5,9 +5,12 @@
 #include <algorithm>
 #include <cmath>
 #include <initializer_list>
+#include <limits>
+#include <set>
 #include <span>
 
 #include "sim/commands/live_fields.h"
+#include "sim/joints/joint_inputs.h"
 #include "sim/state/state_layout.h"
 #include "world/agents/agent_bodies.h"
 #include "world/world_robots.h"
@@ -90,7 +93,7 @@ class Check {
   }
   Status operator()(const SetVelocityGoal& c) const {
     GLOAM_TRY_STATUS(check_handle(c.robot, "robot", 0, robot_count_));
-    if (!finite({c.vx, c.vy, c.yaw_rate})) return refuse("a velocity goal is not finite");
+    if (!finite({c.vx, c.vy, c.yaw_rate, c.vz})) return refuse("a velocity goal is not finite");
     return {};
   }
   Status operator()(const SetJointGoal& c) const {
@@ -99,6 +102,50 @@ class Check {
       return refuse(fmt::format("joint {} is neither a hinge nor a slide", c.joint.id),
                     "its position has more than one coordinate");
     if (!finite({c.position})) return refuse("the goal of a joint is not finite");
+    return {};
+  }
+  Status operator()(const SetJointCommand& c) const {
+    GLOAM_TRY_STATUS(check_handle(c.robot, "robot", 0, robot_count_));
+    GLOAM_TRY_STATUS(check_joints(c.robot, c.joints));
+    const size_t joints = joints_of_command(world_, c.robot, c.joints).size();
+    const auto check = [&](const std::vector<double>& values, const char* name, double least) {
+      if (!values.empty() && values.size() != joints)
+        return Status(
+            refuse(fmt::format("'{}' has {} values for {} joints", name, values.size(), joints),
+                   "set one value per joint, or none to keep the current ones"));
+      for (const double v : values)
+        if (std::isinf(v) || v < least)
+          return Status(refuse(fmt::format("'{}' of a joint cannot be {}", name, v)));
+      return Status();
+    };
+    constexpr double kAny = -std::numeric_limits<double>::max();
+    GLOAM_TRY_STATUS(check(c.position, "position", kAny));
+    GLOAM_TRY_STATUS(check(c.velocity, "velocity", kAny));
+    GLOAM_TRY_STATUS(check(c.effort, "effort", kAny));
+    GLOAM_TRY_STATUS(check(c.kp, "kp", 0));
+    return check(c.kd, "kd", 0);
+  }
+  Status operator()(const SetController& c) const {
+    return check_handle(c.robot, "robot", 0, robot_count_);
+  }
+  Status operator()(const FollowTrajectory& c) const {
+    GLOAM_TRY_STATUS(check_handle(c.robot, "robot", 0, robot_count_));
+    GLOAM_TRY_STATUS(check_joints(c.robot, c.joints));
+    const std::vector<Joint> joints = joints_of_command(world_, c.robot, c.joints);
+    for (const TrajectoryPoint& point : c.trajectory.points)
+      for (size_t i = 0; i < std::min(joints.size(), point.positions.size()); ++i)
+        GLOAM_TRY_STATUS(check_range(joints[i].id, point.positions[i]));
+    return {};
+  }
+  Status operator()(const StopTrajectory& c) const {
+    return check_handle(c.robot, "robot", 0, robot_count_);
+  }
+  Status operator()(const SetPoseGoal& c) const {
+    GLOAM_TRY_STATUS(check_handle(c.robot, "robot", 0, robot_count_));
+    const Quat& q = c.X_WF.q;
+    const double norm = q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z;
+    if (!finite(c.X_WF.p) || !std::isfinite(norm)) return refuse("a pose goal is not finite");
+    if (norm < 1e-12) return refuse("the quaternion of a pose goal is zero");
     return {};
   }
   Status operator()(const SetMocapPose& c) const {
@@ -156,6 +203,37 @@ class Check {
       return refuse(fmt::format("there is no {} number {}", kind, handle.id));
     return {};
   }
+  std::string joint_name(int joint) const {
+    const char* name = mj_id2name(&model_, mjOBJ_JOINT, joint);
+    return name != nullptr ? fmt::format("joint '{}'", name) : fmt::format("joint {}", joint);
+  }
+  // Hinges and slides of the robot, each once.
+  Status check_joints(Robot robot, const std::vector<Joint>& joints) const {
+    const RobotInstance& instance = world_.robots[static_cast<size_t>(robot.id)];
+    const std::vector<Joint> own = joints_of_command(world_, robot, {});
+    if (own.empty())
+      return refuse(fmt::format("robot '{}' has no hinge or slide joints", instance.name));
+    std::set<int> seen;
+    for (const Joint joint : joints) {
+      GLOAM_TRY_STATUS(check_handle(joint, "joint", 0, model_.njnt));
+      if (std::ranges::find(own, joint.id, &Joint::id) == own.end())
+        return refuse(fmt::format("{} is not a hinge or slide of robot '{}'", joint_name(joint.id),
+                                  instance.name));
+      if (!seen.insert(joint.id).second)
+        return refuse(fmt::format("{} is listed twice", joint_name(joint.id)),
+                      "list each joint once");
+    }
+    return {};
+  }
+  // Joints stop softly: a goal at the very end of the range may round beyond it.
+  Status check_range(int joint, double position) const {
+    if (!model_.jnt_limited[joint]) return {};
+    const double low = model_.jnt_range[2 * joint], high = model_.jnt_range[2 * joint + 1];
+    const double slack = 1e-3 * (high - low);
+    if (!(position < low - slack || position > high + slack)) return {};
+    return refuse(fmt::format("position {:g} of {} is outside its range, {:g} to {:g}", position,
+                              joint_name(joint), low, high));
+  }
   Status check_body(Body body) const { return check_handle(body, "movable body", 1, model_.nbody); }
 
   const CompiledWorld& world_;
@@ -165,15 +243,6 @@ class Check {
 };
 
 }  // namespace
-
-int floating_joint(const mjModel& model, int body) {
-  const int root = model.body_rootid[body];
-  for (int i = 0; i < model.body_jntnum[root]; ++i) {
-    const int joint = model.body_jntadr[root] + i;
-    if (model.jnt_type[joint] == mjJNT_FREE) return joint;
-  }
-  return -1;
-}
 
 Status check_command(const CompiledWorld& world, const Command& command) {
   if (command.step < Command::kNextStep) {

@@ -5,11 +5,9 @@
 
 #include "gloam/command.h"
 #include "world/world.h"
+#include "world/world_robots.h"
 
 namespace gloam {
-
-/// The free joint that carries `body` (its own or that of the floating base it hangs from), or -1.
-int floating_joint(const mjModel& model, int body);
 
 /// Refuses handles of nothing and of other Worlds, numbers that are not finite, and effects the
 /// model cannot show.

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <utility>
 
 namespace gloam {
 
@@ -19,11 +20,18 @@ CommandQueue::~CommandQueue() {
 }
 
 Status CommandQueue::post(std::span<const Command> commands) {
+  std::vector<QueuedCommand> queued;
+  for (const Command& command : commands) queued.push_back({command});
+  return post(std::move(queued));
+}
+
+Status CommandQueue::post(std::vector<QueuedCommand> commands) {
   delete_list(retired_.exchange(nullptr, std::memory_order_acquire));
   Node* list = nullptr;
   for (size_t i = commands.size(); i-- > 0;) {
     auto* node = new Node;
-    node->command = commands[i];
+    node->command = std::move(commands[i].command);
+    node->prepared = std::move(commands[i].prepared);
     node->next = list;
     list = node;
   }

@@ -5,6 +5,7 @@
 
 #include <atomic>
 #include <cstdint>
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <span>
@@ -13,8 +14,15 @@
 
 #include "gloam/command.h"
 #include "sim/commands/bounded_queue.h"
+#include "sim/loop/prepared_input.h"
 
 namespace gloam {
+
+/// A Command with the parts of it that were made in advance; null for most.
+struct QueuedCommand {
+  Command command;
+  std::unique_ptr<PreparedInput> prepared = nullptr;
+};
 
 class CommandQueue {
  public:
@@ -29,6 +37,7 @@ class CommandQueue {
   Status post(Command command) { return post(std::span<const Command>(&command, 1)); }
   /// The same for several that come to the simulation together: all or none.
   Status post(std::span<const Command> commands);
+  Status post(std::vector<QueuedCommand> commands);
   /// Commands that have applied since the last call, in order.
   std::vector<LoggedCommand> take_log();
   /// Commands that have applied in `run`, the present one, in order. Error: some were not kept.
@@ -46,25 +55,25 @@ class CommandQueue {
   bool maybe_due(int64_t step) const {
     return arrivals_.size() > 0 || (pending_ != nullptr && pending_->due <= step);
   }
-  /// Calls apply(command) for the commands due before `step`, oldest first, and logs them. A
-  /// ResetSim ends the round: what was posted before it is thrown away, what came after it waits.
-  /// Returns true when there was one.
+  /// Calls apply(command, prepared) for the commands due before `step`, oldest first, and logs
+  /// them. A ResetSim ends the round: what was posted before it is thrown away, what came after it
+  /// waits. Returns true when there was one.
   template <class Apply>
   bool apply_due(int64_t step, int64_t run, Apply&& apply) {
     take_arrivals(step);
     while (pending_ != nullptr && pending_->due <= step) {
       Node* node = pop_pending();
       const bool reset = std::holds_alternative<ResetSim>(node->command.what);
-      if (!reset) apply(static_cast<const Command&>(node->command));
+      if (!reset) apply(static_cast<const Command&>(node->command), node->prepared);
       if (reset) discard_before(node->arrival);
       log(node, run, step);
       if (reset) return true;
     }
     return false;
   }
-  /// Between two steps: every Command that waits becomes translate(command), or is thrown away
-  /// where that is nothing. What was logged before is of another World: from here on the log cannot
-  /// be replayed. Allocates.
+  /// Between two steps: every Command that waits becomes the QueuedCommand translate(command), or
+  /// is thrown away where that is nothing. What was logged before is of another World: from here on
+  /// the log cannot be replayed. Allocates.
   template <class Translate>
   void translate(int64_t step, Translate&& translate) {
     take_arrivals(step);
@@ -72,8 +81,10 @@ class CommandQueue {
     pending_ = pending_tail_ = nullptr;
     while (all != nullptr) {
       Node* node = std::exchange(all, all->next);
-      if (std::optional<Command> command = translate(static_cast<const Command&>(node->command))) {
-        node->command = std::move(*command);
+      if (std::optional<QueuedCommand> next =
+              translate(static_cast<const Command&>(node->command))) {
+        node->command = std::move(next->command);
+        node->prepared = std::move(next->prepared);
         insert(node);
       } else {
         discarded_.fetch_add(1, std::memory_order_relaxed);
@@ -92,6 +103,7 @@ class CommandQueue {
  private:
   struct Node {
     Command command;
+    std::unique_ptr<PreparedInput> prepared = nullptr;  ///< once applied: what it has replaced
     int64_t due = 0, arrival = 0, run = 0;
     Node* next = nullptr;
   };

@@ -3,11 +3,14 @@
 // MuJoCo, Commands and controllers that can be copied decides the future, a copy of the instant.
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "gloam/checkpoint.h"
 #include "gloam/controller.h"
 #include "sim/commands/applied_inputs.h"
+#include "sim/loop/actuator_layer.h"
+#include "sim/loop/controller_slot.h"
 #include "sim/loop/run_record.h"
 #include "sim/snapshots/snapshot.h"
 
@@ -17,6 +20,7 @@ namespace gloam {
 struct StepperState {
   DataPtr data;
   AppliedInputs inputs;
+  ActuatorLayers actuators;
   std::shared_ptr<const LiveFields> live;
   int64_t since = 0, step = 0;
   uint64_t hash = 0;
@@ -28,15 +32,11 @@ struct StepperState {
 
 /// A SimLoop at an instant.
 struct LoopState {
-  struct Slot {
-    std::unique_ptr<Controller> controller;
-    int64_t k = 0, due = 0;
-  };
   std::unique_ptr<StepperState> stepper;
   std::vector<VelocityTarget> goals;
-  std::vector<double> joint_goals;
+  std::vector<std::optional<Pose>> pose_goals;
   size_t scene_cursor = 0;
-  std::vector<Slot> controllers;
+  std::vector<RobotControl> controllers;
 };
 
 struct CheckpointData {

@@ -18,6 +18,10 @@ Result<NextWorld> make_next_world(const std::shared_ptr<const CompiledWorld>& wo
               return Stepper::create(world, seed, timestep, make_data);
             }));
   for (RobotController& controller : controllers) {
+    if (controller.actuators != nullptr)
+      GLOAM_TRY_STATUS(
+          next.stepper->add_actuators(controller.robot, std::move(controller.actuators)));
+    if (controller.controller == nullptr) continue;
     GLOAM_TRY(ControllerSlot slot, ControllerSlot::make(*world, std::move(controller), step_time));
     next.controllers.push_back(std::move(slot));
   }

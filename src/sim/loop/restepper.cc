@@ -7,10 +7,10 @@
 
 namespace gloam {
 
-Result<std::unique_ptr<Restepper>> Restepper::create(RunRecord record, ControllerMaker controllers,
+Result<std::unique_ptr<Restepper>> Restepper::create(RunRecord record, RobotMakers makers,
                                                      DataMaker make_data) {
   std::unique_ptr<Restepper> made(
-      new Restepper(std::move(record), std::move(controllers), std::move(make_data)));
+      new Restepper(std::move(record), std::move(makers), std::move(make_data)));
   const RunRecord& run = made->record_;
   GLOAM_TRY(const auto world, run.chapters.front().compiled());
   const Rational timestep =
@@ -19,10 +19,10 @@ Result<std::unique_ptr<Restepper>> Restepper::create(RunRecord record, Controlle
   std::vector<LoggedCommand> replay;
   for (const Command& command : run.commands) replay.push_back({0, command});
   made->loop_ = std::make_unique<SimLoop>(std::move(first.stepper), timestep, made->queue_,
-                                          std::move(first.scene_commands), std::move(replay));
-  GLOAM_TRY(auto robots, made->controllers_(world));
-  for (RobotController& c : robots)
-    GLOAM_TRY_STATUS(made->loop_->add_controller(c.robot, std::move(c.controller), c.rate));
+                                          std::move(first.scene_commands), std::move(replay),
+                                          made->makers_.controller);
+  GLOAM_TRY(auto robots, make_controllers(world, made->makers_));
+  for (RobotController& c : robots) GLOAM_TRY_STATUS(made->loop_->add_robot(std::move(c)));
   if (!run.inputs.empty()) made->repeat_inputs();
   return made;
 }
@@ -40,7 +40,7 @@ void Restepper::repeat_inputs() {
 Status Restepper::begin_chapter(const RunRecord::Chapter& chapter) {
   const std::shared_ptr<const CompiledWorld> before = loop_->stepper().shared_world();
   GLOAM_TRY(const auto world, chapter.compiled());
-  GLOAM_TRY(auto robots, controllers_(world));
+  GLOAM_TRY(auto robots, make_controllers(world, makers_));
   GLOAM_TRY(NextWorld next,
             make_next_world(world, record_.seed, record_.timestep, std::move(robots), make_data_));
   const Correspondence same(*before, *world);

@@ -2,7 +2,6 @@
 // Restepper: makes a recorded run again, step by step, on the calling thread: for checkpoints and
 // for the verification of logs.
 
-#include <functional>
 #include <memory>
 #include <vector>
 
@@ -11,14 +10,10 @@
 
 namespace gloam {
 
-/// Makes the controllers of all robots of a World.
-using ControllerMaker = std::function<Result<std::vector<RobotController>>(
-    const std::shared_ptr<const CompiledWorld>&)>;
-
 class Restepper {
  public:
   /// Stands at step 0 of the record's first World.
-  static Result<std::unique_ptr<Restepper>> create(RunRecord record, ControllerMaker controllers,
+  static Result<std::unique_ptr<Restepper>> create(RunRecord record, RobotMakers makers,
                                                    DataMaker make_data = {});
 
   /// Goes on to `step`, and stands there as before a recompile at it. Errors: physics fails, a
@@ -32,15 +27,13 @@ class Restepper {
   const RunRecord& record() const { return record_; }
 
  private:
-  Restepper(RunRecord record, ControllerMaker controllers, DataMaker make_data)
-      : record_(std::move(record)),
-        controllers_(std::move(controllers)),
-        make_data_(std::move(make_data)) {}
+  Restepper(RunRecord record, RobotMakers makers, DataMaker make_data)
+      : record_(std::move(record)), makers_(std::move(makers)), make_data_(std::move(make_data)) {}
   Status begin_chapter(const RunRecord::Chapter& chapter);
   void repeat_inputs();
 
   RunRecord record_;
-  ControllerMaker controllers_;
+  RobotMakers makers_;
   DataMaker make_data_;
   CommandQueue queue_{2, 0};
   std::unique_ptr<SimLoop> loop_;

@@ -50,8 +50,9 @@ Result<std::vector<Command>> scene_schedule(const CompiledWorld& world, Rational
   for (int robot = 0; robot < robot_count; ++robot) {
     for (const VelocityGoal& goal :
          world.robots[static_cast<size_t>(robot)].options.controller.goals) {
-      GLOAM_TRY_STATUS(add({.what = SetVelocityGoal{{robot, 0}, goal.vx, goal.vy, goal.yaw_rate}},
-                           goal.time, goal.loc));
+      GLOAM_TRY_STATUS(
+          add({.what = SetVelocityGoal{{robot, 0}, goal.vx, goal.vy, goal.yaw_rate, goal.vz}},
+              goal.time, goal.loc));
     }
   }
   for (const PushOptions& push : world.scene.pushes) {

@@ -1,8 +1,10 @@
 #pragma once
 // SimLoop: the order of things around every step, the same on whichever thread runs it:
-//   Snapshots due now -> Commands due now -> controllers -> step hook -> physics.
+//   Snapshots due now -> Commands due now -> controllers -> logged controllers, step hook ->
+//   physics.
 
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include "sim/commands/command_queue.h"
@@ -24,9 +26,12 @@ class SimLoop {
  public:
   /// `scene_commands` apply in every run, `replay` in the run each entry names; both sorted.
   SimLoop(std::unique_ptr<Stepper> stepper, Rational timestep, CommandQueue& commands,
-          std::vector<Command> scene_commands, std::vector<LoggedCommand> replay);
+          std::vector<Command> scene_commands, std::vector<LoggedCommand> replay,
+          ControllerMaker make_controller = {});
 
   Status add_controller(int robot, std::unique_ptr<Controller> controller, Rational rate);
+  /// The controller and the models of the actuators of a robot.
+  Status add_robot(RobotController robot);
   /// Goes on in another World at the present step. `next` comes as it was made, with what belongs
   /// to its World; it gets back what was here before. Error: then nothing has changed.
   Status exchange(NextWorld& next, const Correspondence& same);
@@ -76,10 +81,16 @@ class SimLoop {
   void close_queues();
 
  private:
-  void apply(const Command& command);
+  void apply(const Command& command, std::unique_ptr<PreparedInput>& prepared);
+  void apply_unprepared(const Command& command);
+  void switch_controller(ControllerSlot* next);
+  void start_controller(ControllerSlot* slot, const Controller* before);
+  void exchange_controllers(NextWorld* next, const Correspondence& same);
   bool take_step();
   bool apply_commands();
-  void run_controllers();
+  /// Those whose controls are inputs of a log, or the others.
+  void run_controllers(bool logged);
+  bool has_logged_controllers() const;
   void run_hook();
   void begin_run();
   void end_run(double time);
@@ -87,6 +98,7 @@ class SimLoop {
   void take_over_goals(const Correspondence& same);
   void find_next_publication();
   VelocityTarget& goal_of(int robot) { return goals_[static_cast<size_t>(robot)]; }
+  RobotControl& control_of(int robot) { return controllers_[static_cast<size_t>(robot)]; }
 
   std::unique_ptr<Stepper> stepper_;
   Rational timestep_;
@@ -94,9 +106,10 @@ class SimLoop {
   std::vector<Command> scene_commands_;
   std::vector<LoggedCommand> replay_;
   size_t scene_cursor_ = 0, replay_cursor_ = 0;
-  std::vector<VelocityTarget> goals_;  // by robot
-  std::vector<double> joint_goals_;    // by joint [rad, m], NaN = none
-  std::vector<ControllerSlot> controllers_;
+  std::vector<VelocityTarget> goals_;            // by robot
+  std::vector<std::optional<Pose>> pose_goals_;  // by robot
+  ControllerMaker make_controller_;              // empty = Commands cannot switch them
+  std::vector<RobotControl> controllers_;        // by robot
   std::vector<Subscription> subscriptions_;
   StepHook hook_;
   std::shared_ptr<HookInputs> hook_inputs_;  // null = not kept

@@ -39,11 +39,12 @@ Simulator::Simulator(std::unique_ptr<Stepper> stepper, Rational timestep, Simula
     : seed_(options.seed),
       own_timestep_(options.timestep),
       make_data_(options.make_data),
+      makers_(options.makers),
       replays_(!options.replay.empty()),
       pace_(options.pace),
       commands_(options.command_capacity, options.log_capacity),
       loop_(std::move(stepper), timestep, commands_, std::move(scene_commands),
-            std::move(options.replay)),
+            std::move(options.replay), makers_.controller),
       pacer_(timestep.value(), options.speed),
       world_(loop_.stepper().shared_world()) {
   loop_.set_waits_for_sensors(pace_ == Pace::kSensors);
@@ -124,9 +125,17 @@ Status Simulator::follow(std::unique_ptr<Motion> motion, int64_t end) {
 }
 
 Status Simulator::post(std::span<const Command> commands) {
-  const std::lock_guard lock(world_mutex_);
-  for (const Command& command : commands) GLOAM_TRY_STATUS(check_command(*world_, command));
-  return commands_.post(commands);
+  for (;;) {
+    const std::shared_ptr<const CompiledWorld> world = this->world();
+    std::vector<QueuedCommand> queued;
+    for (const Command& command : commands) {
+      GLOAM_TRY_STATUS(check_command(*world, command));
+      GLOAM_TRY(auto prepared, prepare_input(world, command, timestep(), makers_.controller));
+      queued.push_back({command, std::move(prepared)});
+    }
+    const std::lock_guard lock(world_mutex_);
+    if (world == world_) return commands_.post(std::move(queued));  // else it was recompiled
+  }
 }
 
 Status Simulator::check_timestep(const CompiledWorld& world) const {
@@ -189,7 +198,7 @@ Result<std::shared_ptr<const CheckpointData>> Simulator::checkpoint() {
   return std::shared_ptr<const CheckpointData>(std::move(made));
 }
 
-Status Simulator::restore(const CheckpointData& checkpoint, const ControllerMaker& controllers) {
+Status Simulator::restore(const CheckpointData& checkpoint) {
   if (is_on_sim_thread()) return no_call_from_a_step();
   const std::lock_guard one_at_a_time(recompile_mutex_);
   const RunRecord& record = checkpoint.record;
@@ -201,7 +210,7 @@ Status Simulator::restore(const CheckpointData& checkpoint, const ControllerMake
                              wanted, timestep().value())};
   std::unique_ptr<Restepper> again;
   if (checkpoint.copy == nullptr || world != this->world()) {
-    GLOAM_TRY(again, Restepper::create(record, controllers, make_data_));
+    GLOAM_TRY(again, Restepper::create(record, makers_, make_data_));
     GLOAM_TRY_STATUS(again->run_until(record.step));
     GLOAM_TRY_STATUS(again->begin_chapters());
     if (again->loop().stepper().hash() != record.hash) {
@@ -232,6 +241,13 @@ Status Simulator::add_controller(int robot, std::unique_ptr<Controller> controll
   if (is_on_sim_thread()) return no_call_from_a_step();
   Status status;
   call([&] { status = loop_.add_controller(robot, std::move(controller), rate); });
+  return status;
+}
+
+Status Simulator::add_robot(RobotController robot) {
+  if (is_on_sim_thread()) return no_call_from_a_step();
+  Status status;
+  call([&] { status = loop_.add_robot(std::move(robot)); });
   return status;
 }
 

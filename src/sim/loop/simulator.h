@@ -32,6 +32,7 @@ struct SimulatorOptions {
   int command_capacity = 4096;              ///< Commands in flight between two steps, 2 … 2^20
   int64_t log_capacity = int64_t{1} << 20;  ///< Commands the log keeps until they are taken
   std::vector<LoggedCommand> replay = {};   ///< a log of the same world, applied at its exact steps
+  RobotMakers makers = {};                  ///< for SetController; empty = an error
 };
 
 struct SimCounters {
@@ -94,14 +95,17 @@ class Simulator {
   Status seek(int64_t step);
   int64_t end() const { return end_; }
 
-  /// Checks a Command and queues it; waits for nothing but a recompile's moment. Errors: not a
-  /// thing of this World, queue full.
+  /// Checks a Command, makes what it needs on this thread, and queues it; waits for nothing but a
+  /// recompile's moment. Errors: not a thing of this World, a controller or trajectory that cannot
+  /// be made, queue full.
   Status post(Command command) { return post(std::span<const Command>(&command, 1)); }
   /// The same for several, which come to the simulation together: all or none.
   Status post(std::span<const Command> commands);
   /// Runs before steps at `rate`, of which the step rate is a multiple; reset now and at every
   /// reset.
   Status add_controller(int robot, std::unique_ptr<Controller> controller, Rational rate);
+  /// The same for what a robot has of controller and models of its actuators.
+  Status add_robot(RobotController robot);
   /// Error: called by a step hook or controller.
   Status set_step_hook(StepHook hook);
   /// From now on what the step hook writes is kept there; null = no longer.
@@ -120,7 +124,7 @@ class Simulator {
   /// Goes on from there in a new run. What takes long is done before, while the simulation runs on.
   /// Commands that wait are thrown away. Errors: of another timestep; stepping it again ends
   /// elsewhere, which is what a step hook or an unpredictable controller does.
-  Status restore(const CheckpointData& checkpoint, const ControllerMaker& controllers);
+  Status restore(const CheckpointData& checkpoint);
   /// From the present step on. The reader holds what it got for as long as it likes.
   Result<std::shared_ptr<SnapshotQueue>> subscribe(const SubscriptionOptions& options);
   /// The present instant; after a failure the last good one.
@@ -177,6 +181,7 @@ class Simulator {
   const uint64_t seed_;
   const std::optional<double> own_timestep_;  // [s]
   const DataMaker make_data_;
+  const RobotMakers makers_;
   const bool replays_;  // a log
   Pace pace_;
   CommandQueue commands_;

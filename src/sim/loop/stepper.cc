@@ -170,6 +170,7 @@ bool Stepper::reset() {
   sensor_stamp_ = state_[0];
   warnings_seen_.fill(0);
   hash_ = hash_span<double>(state_, hash_bytes(&seed_, sizeof(seed_)));
+  actuators_.reset(model_, *data_);
   for (const auto& effect : effects_) effect->advance(context(0));
   if (next_tick() == 0) tick_effects();
   if (!ok) return fail({ErrorKind::kInput, mujoco_error_message()});
@@ -236,6 +237,7 @@ bool Stepper::take_over(const Stepper& before, const Correspondence& same) {
     effect->take_over(context(step_), const_cast<Effect*>(before.find_effect(effect->kind())));
     effect->write_state(step_, data_.get());
   }
+  actuators_.take_over(before.actuators_, same, model_, *data_);
   mj_getState(&model_, data_.get(), state_.data(), mjSTATE_INTEGRATION);
   hash_ = hash_span<double>(state_, hash_);
   return stand_at_state() || fail({ErrorKind::kInput, mujoco_error_message()});
@@ -248,8 +250,7 @@ void Stepper::apply(const Command& command) {
         using T = std::decay_t<decltype(what)>;
         if constexpr (std::is_same_v<T, SetLiveField>) {
           change_live(what);
-        } else if constexpr (!std::is_same_v<T, SetVelocityGoal> &&
-                             !std::is_same_v<T, SetJointGoal> && !std::is_same_v<T, ResetSim>) {
+        } else if constexpr (requires { inputs_->apply(model_, data, what); }) {
           inputs_->apply(model_, data, what);
         }
       },
@@ -313,14 +314,19 @@ bool Stepper::step() {
   events_.footfalls.clear();
   set_options();
   AppliedInputs* inputs = inputs_.get();
-  const bool ok = try_mujoco([=, this] {
+  bool actuated = true;
+  const bool ok = try_mujoco([=, this, &actuated] {
     inputs->before_step(*model, *data);
+    actuated = actuators_.apply(&model_, data);
+    if (!actuated) return;
     if (acts_on_bodies_)
       step_in_halves();
     else
       mj_step(model, data);
   });
+  actuators_.release(&model_, data);
   for (const auto& effect : effects_) effect->end_step(model_);
+  if (ok && !actuated) return fail(actuators_.error());
   if (!ok) {
     Error error{ErrorKind::kDiverged, mujoco_error_message()};
     error.message +=
@@ -340,7 +346,7 @@ bool Stepper::step() {
   own_sensors_ = false;
   state_.swap(next_state_);
   ++step_;
-  hash_ = hash_span<double>(state_, hash_);
+  hash_ = actuators_.hash(hash_span<double>(state_, hash_));
   snapshot_ = {};
   if (step_ == next_tick()) tick_effects();
   return true;
@@ -409,7 +415,10 @@ const Snapshot& Stepper::snapshot() {
       out.hash = hash_;
       out.live = live_;
       for (const auto& effect : effects_) effect->publish(step_, &out.effects);
+      for (size_t robot = 0; robot < out.trajectories.size(); ++robot)
+        out.trajectories[robot] = inputs_->joints().trajectory(static_cast<int>(robot));
       out.effects.loads.assign(events_.loads.begin(), events_.loads.end());
+      actuators_.publish(&out.actuators);
       out.sensor_stamp = sensor_stamp_;
       out.warnings = warnings_seen_;
       std::copy(state_.begin(), state_.end(), out.state.begin());

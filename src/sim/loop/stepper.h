@@ -10,6 +10,7 @@
 #include "gloam/physics_memory.h"
 #include "sim/commands/applied_inputs.h"
 #include "sim/effects/effect.h"
+#include "sim/loop/actuator_layer.h"
 #include "sim/snapshots/snapshot_pool.h"
 #include "sim/state/private_model.h"
 #include "sim/state/state_layout.h"
@@ -32,6 +33,12 @@ class Stepper {
   /// Back to the initial state, live fields included. False and error() when MuJoCo refuses.
   bool reset();
 
+  /// Models of the actuators of a robot, from the present instant on. Error: as begin() says.
+  Status add_actuators(int robot, std::unique_ptr<ActuatorLayer> layer) {
+    snapshot_ = {};
+    return actuators_.add(robot, std::move(layer), model_, *data_);
+  }
+
   /// Goes on at the step where `before`, of another World, stands, with the state of what remains.
   /// To be called once, before the first step. False and error() when MuJoCo refuses; `before` is
   /// as it was.
@@ -51,7 +58,8 @@ class Stepper {
   /// Number of the run in Snapshots.
   void set_run(int64_t run);
 
-  /// Applies one checked Command now. Goals and resets are the loop's.
+  /// Applies one checked Command now. Velocity goals, controllers, trajectories and resets are the
+  /// loop's.
   void apply(const Command& command);
 
   /// One physics step, bit-equal to mj_step on the same state. False when it failed: then it stands
@@ -87,6 +95,8 @@ class Stepper {
   int most_contacts() const { return most_contacts_; }
   /// Of the last step: loads and footfalls that MuJoCo's contacts have not.
   const StepEvents& events() const { return events_; }
+  /// Targets and trajectories of joints.
+  JointInputs& joints() { return inputs_->joints(); }
   /// The effect of a kind, null where the World has none.
   const Effect* find_effect(std::string_view kind) const;
 
@@ -126,6 +136,7 @@ class Stepper {
   DataPtr scratch_;             // for mj_setConst; made on first use
   std::unique_ptr<AppliedInputs> inputs_;
   EffectList effects_;
+  ActuatorLayers actuators_;
   std::unique_ptr<Motion> motion_;  // null = physics
   bool acts_on_bodies_ = false;     // one of them does
   StepEvents events_;

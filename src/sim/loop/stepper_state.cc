@@ -16,9 +16,9 @@ std::unique_ptr<StepperState> Stepper::save() const {
   const mjData* data = data_.get();
   if (!try_mujoco([&] { copy = mj_copyData(nullptr, model, data); }) || copy == nullptr)
     return nullptr;
-  return std::make_unique<StepperState>(StepperState{DataPtr(copy), *inputs_, live_, since_, step_,
-                                                     hash_, state_, sensors_, own_sensors_,
-                                                     sensor_stamp_, warnings_seen_});
+  return std::make_unique<StepperState>(StepperState{DataPtr(copy), *inputs_, actuators_, live_,
+                                                     since_, step_, hash_, state_, sensors_,
+                                                     own_sensors_, sensor_stamp_, warnings_seen_});
 }
 
 // The model's fields as they are in `live`.
@@ -59,6 +59,7 @@ bool Stepper::restore(const StepperState& saved) {
   if (!try_mujoco([&] { mj_copyData(data, model, saved.data.get()); }))
     return fail({ErrorKind::kInput, mujoco_error_message()});
   *inputs_ = saved.inputs;
+  actuators_ = saved.actuators;
   since_ = saved.since;
   step_ = saved.step;
   hash_ = saved.hash;

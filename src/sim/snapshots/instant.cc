@@ -17,6 +17,7 @@
 #include "sim/loop/step_schedule.h"
 #include "sim/loop/stepper.h"
 #include "sim/snapshots/snapshot.h"
+#include "sim/state/state_layout.h"
 #include "world/model_memory.h"
 
 namespace gloam {
@@ -147,8 +148,11 @@ Status Instant::solve(const Snapshot& snapshot) {
   GLOAM_TRY_STATUS(guarded([&] {
     mj_setState(model, data, in.state.data(), mjSTATE_INTEGRATION);
     s.blow(in);
+    set_applied_controls(in.actuators, *in.world->model, &s.model, data);
     mj_forward(model, data);
     s.add_contacts_and_drag();
+    if (!in.actuators.empty())
+      std::ranges::copy(state_part(*model, in.state, mjSTATE_CTRL), data->ctrl);  // commanded
     // Quantities that a forward pass computes only if a sensor asks for them.
     mj_energyPos(model, data);
     mj_energyVel(model, data);

@@ -51,4 +51,17 @@ double Snapshot::control(Actuator actuator) const {
                     mjSTATE_CTRL)[static_cast<size_t>(model.actuator_ctrladr[actuator.id])];
 }
 
+std::shared_ptr<const ActiveTrajectory> Snapshot::trajectory(Robot robot) const {
+  check_handle(*data_, robot, static_cast<int>(data_->world->robots.size()));
+  const auto i = static_cast<size_t>(robot.id);
+  return i < data_->trajectories.size() ? data_->trajectories[i] : nullptr;
+}
+
+const ActuatorOutputs* Snapshot::actuators(Robot robot) const {
+  check_handle(*data_, robot, static_cast<mjtSize>(data_->world->robots.size()));
+  for (const ActuatorOutputs& outputs : data_->actuators)
+    if (outputs.robot == robot.id) return &outputs;
+  return nullptr;
+}
+
 }  // namespace gloam

@@ -8,8 +8,10 @@
 #include <memory>
 #include <vector>
 
+#include "gloam/joints/joint_trajectory.h"
 #include "gloam/snapshot.h"
 #include "sim/effects/effect_outputs.h"
+#include "sim/snapshots/actuator_outputs.h"
 
 namespace gloam {
 
@@ -36,6 +38,8 @@ struct SnapshotData {
   std::array<int, mjNWARNING> warnings{};  ///< MuJoCo's since the reset, by mjtWarning
   std::shared_ptr<const LiveFields> live;  ///< null = nothing changed
   EffectOutputs effects;
+  std::vector<std::shared_ptr<const ActiveTrajectory>> trajectories;  ///< by robot, null = none
+  std::vector<ActuatorOutputs> actuators;  ///< of robots with actuator models, as their layers
 };
 
 /// Whoever can hand out Snapshots in order: the live simulation, or a replay.

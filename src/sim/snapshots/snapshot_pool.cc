@@ -63,6 +63,7 @@ SnapshotPool::Slot* SnapshotPool::add_slot() {
   data.state.resize(static_cast<size_t>(state_size(*world_->model)));
   data.sensordata.resize(static_cast<size_t>(world_->model->nsensordata));
   data.effects.fit(*world_);
+  data.trajectories.resize(world_->robots.size());
   slots_.fetch_add(1, std::memory_order_relaxed);
   return all_.back().get();
 }

@@ -222,10 +222,11 @@ std::optional<Command> Correspondence::translate(const Command& command) const {
           return follow(what.actuator, actuator);
         } else if constexpr (std::is_same_v<T, SetJointState> || std::is_same_v<T, SetJointGoal>) {
           return follow(what.joint, joint);
-        } else if constexpr (std::is_same_v<T, SetVelocityGoal>) {
-          return follow(what.robot, robot);
-        } else if constexpr (std::is_same_v<T, SetControls>) {
-          return follow(what.robot, robot);
+        } else if constexpr (requires { what.robot; }) {
+          bool all = follow(what.robot, robot);
+          if constexpr (requires { what.joints; })
+            for (Joint& one : what.joints) all = follow(one, joint) && all;
+          return all;
         } else if constexpr (std::is_same_v<T, SetLiveField>) {
           // Values that lay side by side may lie apart now.
           const std::vector<int> places = live_values(what.field);

@@ -37,6 +37,8 @@ std::string physical_difference(const mjModel& a, const mjModel& b) {
             sizeof(type) * static_cast<size_t>(a.nr) * static_cast<size_t>(nc));
 #undef MJ_M
 #define MJ_M(n) a.n
+#undef XNV
+#define XNV X
   X(mjtNum, qpos0, nq, 1)
   X(mjtNum, qpos_spring, nq, 1)
   MJMODEL_POINTERS_BODY

@@ -27,38 +27,49 @@ class CopiedController final : public Controller {
   double sum_ = 0;
 };
 
-template <class C>
-Result<std::vector<RobotController>> controllers_of(const std::shared_ptr<const CompiledWorld>&) {
-  std::vector<RobotController> controllers;
-  controllers.push_back({0, std::make_unique<C>(), {250, 1}});
-  return controllers;
+constexpr Rational kControlRate = {250, 1};
+
+/// The rich model, whose robot has a controller of the test's.
+std::shared_ptr<CompiledWorld> controlled_world() {
+  auto world = world_from_mjcf(kRichModel);
+  world->robots[0].options.controller = {.type = "of the test", .rate = kControlRate};
+  return world;
 }
 
-std::unique_ptr<Simulator> driven(std::shared_ptr<const CompiledWorld> world,
-                                  std::unique_ptr<Controller> controller) {
-  auto sim = make_simulator(std::move(world), lockstep());
-  EXPECT_TRUE(sim->add_controller(0, std::move(controller), {250, 1}).ok());
+template <class C>
+Result<std::unique_ptr<Controller>> make_one(const std::shared_ptr<const CompiledWorld>&, int,
+                                             const ControllerOptions&) {
+  return std::unique_ptr<Controller>(std::make_unique<C>());
+}
+
+template <class C>
+std::unique_ptr<Simulator> driven(std::shared_ptr<const CompiledWorld> world) {
+  SimulatorOptions options = lockstep();
+  options.makers.controller = make_one<C>;
+  auto sim = make_simulator(std::move(world), std::move(options));
+  EXPECT_TRUE(sim->add_controller(0, std::make_unique<C>(), kControlRate).ok());
   sim->start();
   return sim;
 }
 
-Body body(const CompiledWorld& world, const char* name) {
-  return {mj_name2id(world.model.get(), mjOBJ_BODY, name), world.serial};
+Body body(const CompiledWorld& world, const std::string& name) {
+  return {mj_name2id(world.model.get(), mjOBJ_BODY, name.c_str()), world.serial};
 }
 
 /// Pushes, drags, live fields: the marks that Commands leave.
-void disturb(Simulator& sim, int64_t step) {
+void disturb(Simulator& sim, int64_t step, const std::string& prefix = "") {
   const CompiledWorld& world = *sim.world();
-  ASSERT_TRUE(sim.post({step, SetWrench{body(world, "ball"), {0.1, 0, 1}, {}}}).ok());
-  ASSERT_TRUE(sim.post({step, DragBody{body(world, "base"), {0, 0, .05}, {.2, 0, 1}}}).ok());
+  ASSERT_TRUE(sim.post({step, SetWrench{body(world, prefix + "ball"), {0.1, 0, 1}, {}}}).ok());
+  ASSERT_TRUE(
+      sim.post({step, DragBody{body(world, prefix + "base"), {0, 0, .05}, {.2, 0, 1}}}).ok());
   ASSERT_TRUE(sim.post({step + 20, SetLiveField{LiveFieldId::kGravity, 0, {1, 0, -8}}}).ok());
   ASSERT_TRUE(sim.post({step + 30, SetLiveField{LiveFieldId::kBodyMass, 1, {1.5}}}).ok());
 }
 
 template <class C>
 void expect_the_same_tail(bool copied) {
-  const auto world = world_from_mjcf(kRichModel);
-  auto sim = driven(world, std::make_unique<C>());
+  const auto world = controlled_world();
+  auto sim = driven<C>(world);
   ASSERT_TRUE(sim->step(40).ok());
   disturb(*sim, 60);
   ASSERT_TRUE(sim->step(100).ok());
@@ -71,7 +82,7 @@ void expect_the_same_tail(bool copied) {
   const std::vector<double> sensors = sim->latest().data().sensordata;
 
   const auto go_on = [&](Simulator& other) {
-    ASSERT_TRUE(other.restore(*checkpoint, controllers_of<C>).ok());
+    ASSERT_TRUE(other.restore(*checkpoint).ok());
     EXPECT_EQ(other.latest().step(), 140);
     EXPECT_EQ(other.latest().hash(), there);
     disturb(other, 150);
@@ -81,10 +92,10 @@ void expect_the_same_tail(bool copied) {
   };
   go_on(*sim);
   go_on(*sim);  // as often as one likes
-  auto fresh = driven(world, std::make_unique<C>());
+  auto fresh = driven<C>(world);
   go_on(*fresh);
   // Then another way: another end.
-  ASSERT_TRUE(fresh->restore(*checkpoint, controllers_of<C>).ok());
+  ASSERT_TRUE(fresh->restore(*checkpoint).ok());
   ASSERT_TRUE(fresh->step(100).ok());
   EXPECT_NE(fresh->latest().hash(), end);
 }
@@ -95,18 +106,18 @@ TEST(Checkpoint, SteppedAgainGoesOnWithTheSameBits) {
 }
 
 TEST(Checkpoint, OfACheckpointsBranchIsWholeToo) {
-  const auto world = world_from_mjcf(kRichModel);
-  auto sim = driven(world, std::make_unique<RandomController>());
+  const auto world = controlled_world();
+  auto sim = driven<RandomController>(world);
   disturb(*sim, 10);
   ASSERT_TRUE(sim->step(50).ok());
   const auto first = *sim->checkpoint();
-  ASSERT_TRUE(sim->restore(*first, controllers_of<RandomController>).ok());
+  ASSERT_TRUE(sim->restore(*first).ok());
   disturb(*sim, 60);
   ASSERT_TRUE(sim->step(50).ok());
   const auto second = *sim->checkpoint();
   const uint64_t hash = sim->latest().hash();
-  auto fresh = driven(world, std::make_unique<RandomController>());
-  ASSERT_TRUE(fresh->restore(*second, controllers_of<RandomController>).ok());
+  auto fresh = driven<RandomController>(world);
+  ASSERT_TRUE(fresh->restore(*second).ok());
   EXPECT_EQ(fresh->latest().hash(), hash);
 }
 
@@ -117,25 +128,31 @@ std::shared_ptr<const CompiledWorld> world_of_file(const std::filesystem::path& 
 // The run keeps the source of the World that it has left, and the checkpoint compiles it again.
 TEST(Checkpoint, LeadsThroughARecompile) {
   const TempFolder folder;
-  const auto file = folder.write("rich.xml", kRichModel);
+  folder.write("rich.xml", kRichModel);
+  const auto file = folder.write("scene.toml", R"([[robot]]
+name = "rich"
+file = "rich.xml"
+[robot.controller]
+type = "joint_position"
+rate = 250)");
   const auto world = world_of_file(file), other = world_of_file(file);
-  auto sim = driven(world, std::make_unique<RandomController>());
-  disturb(*sim, 10);
+  auto sim = driven<RandomController>(world);
+  disturb(*sim, 10, "rich/");
   ASSERT_TRUE(sim->step(50).ok());
-  ASSERT_TRUE(sim->recompile(other, *controllers_of<RandomController>(other)).ok());
-  disturb(*sim, 60);
+  ASSERT_TRUE(sim->recompile(other, *make_controllers(other, {make_one<RandomController>})).ok());
+  disturb(*sim, 60, "rich/");
   ASSERT_TRUE(sim->step(50).ok());
   const auto checkpoint = *sim->checkpoint();
   const uint64_t hash = sim->latest().hash();
   ASSERT_EQ(checkpoint->record.chapters.size(), 2u);
-  auto fresh = driven(world, std::make_unique<RandomController>());
-  ASSERT_TRUE(fresh->restore(*checkpoint, controllers_of<RandomController>).ok());
+  auto fresh = driven<RandomController>(world);
+  ASSERT_TRUE(fresh->restore(*checkpoint).ok());
   EXPECT_EQ(fresh->latest().hash(), hash);
   EXPECT_EQ(fresh->world(), other);
 }
 
 TEST(Checkpoint, ForgetsWhatWasBeforeAReset) {
-  auto sim = driven(world_from_mjcf(kRichModel), std::make_unique<RandomController>());
+  auto sim = driven<RandomController>(controlled_world());
   disturb(*sim, 10);
   ASSERT_TRUE(sim->step(50).ok());
   ASSERT_TRUE(sim->reset().ok());
@@ -144,42 +161,41 @@ TEST(Checkpoint, ForgetsWhatWasBeforeAReset) {
 }
 
 TEST(Checkpoint, StepHookThatIsNotRepeatedIsToldOf) {
-  auto sim = driven(world_from_mjcf(kRichModel), std::make_unique<RandomController>());
+  auto sim = driven<RandomController>(controlled_world());
   ASSERT_TRUE(sim->set_step_hook([](const mjModel*, mjData* d) { d->qvel[0] += 1e-3; }).ok());
   ASSERT_TRUE(sim->step(50).ok());
   const auto checkpoint = *sim->checkpoint();
   const uint64_t before = sim->latest().hash();
-  const Status restored = sim->restore(*checkpoint, controllers_of<RandomController>);
+  const Status restored = sim->restore(*checkpoint);
   ASSERT_FALSE(restored.ok());
   EXPECT_NE(restored.error().to_string().find("state hash"), std::string::npos);
   EXPECT_EQ(sim->latest().hash(), before);
 }
 
 TEST(Checkpoint, RefusesAnotherTimestepAndAFailedSimulation) {
-  auto sim = driven(world_from_mjcf(kRichModel), std::make_unique<RandomController>());
+  auto sim = driven<RandomController>(controlled_world());
   ASSERT_TRUE(sim->step(5).ok());
   const auto checkpoint = *sim->checkpoint();
-  auto slower =
-      make_simulator(world_from_mjcf(kRichModel), {.timestep = 0.01, .pace = Pace::kLockstep});
+  auto slower = make_simulator(controlled_world(), {.timestep = 0.01, .pace = Pace::kLockstep});
   slower->start();
-  EXPECT_FALSE(slower->restore(*checkpoint, controllers_of<RandomController>).ok());
+  EXPECT_FALSE(slower->restore(*checkpoint).ok());
   ASSERT_TRUE(
       sim->set_step_hook([](const mjModel*, mjData* d) { d->qvel[0] = std::nan(""); }).ok());
   EXPECT_FALSE(sim->step(2).ok());
   EXPECT_FALSE(sim->checkpoint().ok());
   // Going back heals it, as a reset does.
   ASSERT_TRUE(sim->set_step_hook({}).ok());
-  ASSERT_TRUE(sim->restore(*checkpoint, controllers_of<RandomController>).ok());
+  ASSERT_TRUE(sim->restore(*checkpoint).ok());
   EXPECT_TRUE(sim->step(5).ok());
 }
 
 TEST(Checkpoint, StreamsGoOnInANewRun) {
-  auto sim = driven(world_from_mjcf(kRichModel), std::make_unique<CopiedController>());
+  auto sim = driven<CopiedController>(controlled_world());
   auto queue = *sim->subscribe({.rate = {50, 1}, .required = true, .capacity = 64});
   ASSERT_TRUE(sim->step(40).ok());
   const auto checkpoint = *sim->checkpoint();
   ASSERT_TRUE(sim->step(20).ok());
-  ASSERT_TRUE(sim->restore(*checkpoint, controllers_of<CopiedController>).ok());
+  ASSERT_TRUE(sim->restore(*checkpoint).ok());
   ASSERT_TRUE(sim->step(20).ok());
   std::vector<std::pair<int64_t, int64_t>> seen;  // run, step
   while (const Snapshot s = queue->try_next()) seen.push_back({s.data().run, s.step()});

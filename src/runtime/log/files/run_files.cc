@@ -59,6 +59,9 @@ std::vector<fs::path> run_files(const CompiledWorld& world) {
   // Only `scene` has the values drawn by [[randomize]], only `written` has the omitted elements.
   for (const Scene* scene : {&world.written, &world.scene}) {
     Scene copy = *scene;
+    // A log contains the controls that networks gave, and is replayed without them.
+    for (RobotOptions& robot : copy.robots)
+      robot.controller.network = robot.controller.settings = fs::path();
     visit_scene_paths(&copy, [&list](fs::path* path) { list.add_with_parts(*path); });
   }
   for (const VisualOnlyMesh& mesh : world.visual_meshes) list.add_with_parts(mesh.file);

@@ -162,7 +162,11 @@ class SceneFinder {
   void list_files() {
     is_listed_ = true;
     int entries = 0;
-    for (const fs::path& place : places_) {
+    std::vector<fs::path> folders = places_;
+    // Gloam's own robots need not lie near the scene that uses them.
+    if (fs::path own = catalogue_folder(); !own.empty() && !is_given_)
+      folders.insert(folders.begin(), std::move(own));
+    for (const fs::path& place : folders) {
       if (!is_given_ && holds_homes(place)) continue;  // unasked, no whole disk or home is searched
       std::error_code code;
       fs::recursive_directory_iterator it(place, fs::directory_options::skip_permission_denied,

@@ -25,6 +25,7 @@ Status RotorThrust::solve(const Snapshot& snapshot, std::vector<GasRotor>* rotor
   mjData* d = data_.get();
   GLOAM_TRY_STATUS(guarded([&] {
     mj_setState(&model_, d, in.state.data(), mjSTATE_INTEGRATION);
+    set_applied_controls(in.actuators, *world_->model, &model_, d);
     mj_fwdPosition(&model_, d);
     mj_fwdVelocity(&model_, d);
     mj_fwdActuation(&model_, d);
