@@ -19,6 +19,7 @@ from gloam import _core  # noqa: E402
 
 from .batch import check, convert, evaluate, generate, render, report, run  # noqa: E402
 from .cameras import Camera, Frame, Lidar, Scan, Sensor, Subscription  # noqa: E402
+from .catalogue import RobotModel, guess_robot, robot_model, robots  # noqa: E402
 from .elements import Actuator, Body, Joint, Pose, Robot, yaw_quaternion  # noqa: E402
 from .errors import (  # noqa: E402
     ClosedError,
@@ -39,9 +40,13 @@ from .policy import Policy  # noqa: E402
 from .scene import Option, Scene, describe  # noqa: E402
 from .simulation import Checkpoint, Simulation, load  # noqa: E402
 from .world import World  # noqa: E402
-from . import distribute  # noqa: E402
+from . import distribute, ik  # noqa: E402
 
 import importlib.util as _util  # noqa: E402
+
+_openvino = _util.find_spec("openvino")
+if _openvino is not None and _openvino.submodule_search_locations:  # controllers in C++ load the same library
+    _os.environ.setdefault("GLOAM_OPENVINO", _openvino.submodule_search_locations[0])
 
 if _util.find_spec("gymnasium") is not None:  # its environments are registered with the import
     from .envs import make_env, make_vec_env  # noqa: E402
@@ -54,7 +59,7 @@ set_log_level = _core.set_log_level
 
 __all__ = [
     "Actuator", "Body", "Camera", "Checkpoint", "ClosedError", "DivergedError", "Error", "ForkedError", "Frame", "InputError", "IoError", "Joint",
-    "Lidar", "Log", "NotFoundError", "Option", "PartialError", "Policy", "Pose", "Robot", "RunReport", "Scan", "Scene", "Sensor", "Simulation",
+    "Lidar", "Log", "NotFoundError", "Option", "PartialError", "Policy", "Pose", "Robot", "RobotModel", "RunReport", "Scan", "Scene", "Sensor", "Simulation",
     "StoppedError", "StuckError", "Subscription", "UnsupportedError", "UsageError", "Verification", "World", "check", "configuration", "convert", "describe",
-    "distribute", "evaluate", "generate", "home", "load", "make_env", "make_vec_env", "render", "replay", "report", "run", "set_log_level", "set_thread_count", "yaw_quaternion",
+    "distribute", "evaluate", "generate", "guess_robot", "home", "ik", "load", "make_env", "make_vec_env", "render", "replay", "report", "robot_model", "robots", "run", "set_log_level", "set_thread_count", "yaw_quaternion",
 ]

@@ -4,13 +4,14 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Generic, TypeVar
+from typing import TYPE_CHECKING, Any, Generic, TypeVar, cast
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from gloam import _core
 
+from ._toml import key_text, to_text
 from .dynamics import Dynamics
 from .errors import InputError, NotFoundError, UsageError
 
@@ -340,9 +341,35 @@ class Robot(Element):
     def controls(self, values: ArrayLike) -> None:
         self._sim._core.set_controls(self._now(), values, lease=self._sim._leases.get(self.name))
 
-    def command(self, vx: float = 0.0, vy: float = 0.0, yaw_rate: float = 0.0) -> None:
-        """Velocity goal of its controller in its heading frame [m/s, m/s, rad/s]; stays until changed."""
-        self._sim._core.set_velocity_goal(self._now(), (vx, vy, yaw_rate), lease=self._sim._leases.get(self.name))
+    @property
+    def battery(self) -> dict[str, float]:
+        """Battery and electrical power of its actuator models: `voltage` [V], `current` [A], `charge` (0 to 1), `power`
+        [W], and `energy` since the reset [J]; NaN where it has no model of them. Error: it has no [[robot.actuator]]."""
+        readings = self._readings()
+        return {name: readings[name] for name in ("voltage", "current", "charge", "power", "energy")}
+
+    @property
+    def motor_temperatures(self) -> Doubles:
+        """Temperatures of the windings of its actuators [°C], in the order of `controls`; NaN where an actuator has no
+        thermal model, (n,). Error: it has no [[robot.actuator]]."""
+        temperatures = self._readings()["temperatures"]
+        return read_only(np.array([temperatures.get(a.id, np.nan) for a in self._info["actuators"]]))
+
+    def _readings(self) -> dict[str, Any]:
+        readings = self._sim._core.actuator_readings(self._now())
+        if readings is None:
+            raise NotFoundError(f"robot '{self.name}' has no actuator models", hint="add [[robot.actuator]] to the scene")
+        return cast(dict[str, Any], readings)
+
+    def command(self, vx: float = 0.0, vy: float = 0.0, yaw_rate: float = 0.0, vz: float = 0.0) -> None:
+        """Velocity goal of its controller in its heading frame [m/s, m/s, rad/s, m/s]; stays until changed. vz, up, is for
+        flying robots."""
+        self._sim._core.set_velocity_goal(self._now(), (vx, vy, yaw_rate, vz), lease=self._sim._leases.get(self.name))
+
+    def set_pose_goal(self, pose: Pose | tuple[ArrayLike, ArrayLike]) -> None:
+        """Goal of the frame that its controller ("ik", "osc") controls, in the world: a Pose, or position (3,) [m] and
+        quaternion wxyz (4,); stays until changed."""
+        self._sim._core.set_pose_goal(self._now(), pose, lease=self._sim._leases.get(self.name))
 
     def scale_dynamics(self, *, mass: ArrayLike | None = None, friction: ArrayLike | None = None, gains: ArrayLike | None = None,
                        armature: ArrayLike | None = None, damping: ArrayLike | None = None) -> None:
@@ -357,6 +384,58 @@ class Robot(Element):
         joints = self.joints
         for joint, position in [(joints[name], position) for name, position in goals.items()]:
             joint.set_goal(position)
+
+    def _some_joints(self, joints: Sequence[str] | None) -> list[Any]:
+        return [] if joints is None else [self.joints[name]._now() for name in joints]
+
+    def command_joints(self, position: ArrayLike | None = None, velocity: ArrayLike | None = None, effort: ArrayLike | None = None,
+                       kp: ArrayLike | None = None, kd: ArrayLike | None = None, *, joints: Sequence[str] | None = None) -> None:
+        """Targets of joints for its controller, one number per joint, which stay until changed (docs/controllers.md).
+
+        Position [rad, m], velocity, feed-forward effort [N m, N], stiffness and damping. None = unchanged, NaN = no
+        target. `joints`: names with or without the robot's prefix; None = all hinges and slides, as in `joint_names`.
+        """
+        handle = self._now()
+        given = {"position": position, "velocity": velocity, "effort": effort, "kp": kp, "kd": kd}
+        targets = {key: np.asarray(value, dtype=np.float64).reshape(-1) for key, value in given.items() if value is not None}
+        self._sim._core.set_joint_command(handle, self._some_joints(joints), targets, lease=self._sim._leases.get(self.name))
+
+    def set_controller(self, type: str, **options: Any) -> None:
+        """Replaces its controller at the next step, until a reset: set_controller("joint_position", kp=80). It
+        takes the options of [robot.controller]."""
+        text = "\n".join(f"{key_text(key)} = {to_text(value, key)}" for key, value in {"type": type, **options}.items())
+        self._sim._core.set_controller(self._now(), text, lease=self._sim._leases.get(self.name))
+
+    def follow(self, positions: ArrayLike, times: ArrayLike | None = None, *, velocities: ArrayLike | None = None,
+               accelerations: ArrayLike | None = None, joints: Sequence[str] | None = None, profile: str | None = None,
+               max_velocity: ArrayLike = 1.0, max_acceleration: ArrayLike = 4.0) -> None:
+        """Makes its controller follow a trajectory from the next step, which replaces the previous one.
+
+        `positions` [rad, m], (points, joints) or (joints,). With `times` [s after the start], (points,): a spline
+        through the points, with velocities and accelerations where they are given. Without: profile "trapezoidal"
+        (default) or "quintic", at rest in each point, within the limits (one number or one per joint).
+        """
+        handle = self._now()
+        rows = np.atleast_2d(np.asarray(positions, dtype=np.float64))
+        empty: list[float] = []
+
+        def part(values: ArrayLike | None) -> Sequence[Any]:
+            if values is None:
+                return [empty] * len(rows)
+            array = np.atleast_2d(np.asarray(values, dtype=np.float64))
+            if len(array) != len(rows):
+                raise UsageError(f"expected {len(rows)} rows, one per point, got {len(array)}")
+            return list(array)
+
+        stamps = np.zeros(len(rows)) if times is None else _sized(times, len(rows), "times")
+        kind = profile or ("trapezoidal" if times is None else "spline")
+        speed, change = ([], []) if kind == "spline" else (list(np.atleast_1d(x)) for x in (max_velocity, max_acceleration))
+        points = [(float(t), q, v, a) for t, q, v, a in zip(stamps, rows, part(velocities), part(accelerations))]
+        self._sim._core.follow(handle, self._some_joints(joints), points, kind, speed, change, lease=self._sim._leases.get(self.name))
+
+    def stop_trajectory(self) -> None:
+        """Ends its trajectory at the next step; the joints hold their positions."""
+        self._sim._core.stop_trajectory(self._now(), lease=self._sim._leases.get(self.name))
 
     def set_joints(self, qpos: ArrayLike | None = None, qvel: ArrayLike | None = None) -> None:
         """Sets its hinge and slide joints at the next step, (n,) each."""

@@ -166,9 +166,13 @@ class Client:
         """{full name: position [rad, m]} for robots' controllers."""
         self.call("joint_goals", **_given(joints=joints, at_step=at_step))
 
-    def velocity_goal(self, vx=0.0, vy=0.0, yaw_rate=0.0, robot=None, at_step=None):
+    def velocity_goal(self, vx=0.0, vy=0.0, yaw_rate=0.0, robot=None, at_step=None, vz=0.0):
         """[m/s, m/s, rad/s] in the robot's heading frame."""
-        self.call("velocity_goal", **_given(vx=vx, vy=vy, yaw_rate=yaw_rate, robot=robot, at_step=at_step))
+        self.call("velocity_goal", **_given(vx=vx, vy=vy, yaw_rate=yaw_rate, vz=vz or None, robot=robot, at_step=at_step))
+
+    def pose_goal(self, position, orientation=None, robot=None, at_step=None):
+        """Goal of the frame that the robot's controller controls, in the world: position (3) [m], orientation (4) w x y z."""
+        self.call("pose_goal", **_given(position=position, orientation=orientation, robot=robot, at_step=at_step))
 
     def joint_states(self, positions=None, velocities=None, at_step=None):
         """Puts joints elsewhere: {full name: [position(s)]} [rad, m; ball 4, free 7], velocities likewise [1, 3, 6]."""

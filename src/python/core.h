@@ -203,5 +203,6 @@ void bind_frames(nb::module_& m);
 void bind_logs(nb::module_& m);
 void bind_runs(nb::module_& m);
 void bind_tools(nb::module_& m);
+void bind_ik(nb::module_& m);
 
 }  // namespace gloam::python

@@ -32,4 +32,5 @@ NB_MODULE(_core, m) {
   bind_logs(m);
   bind_runs(m);
   bind_tools(m);
+  bind_ik(m);
 }

@@ -3,6 +3,7 @@
 #include "gloam/simulation.h"
 
 #include "frames.h"
+#include "gloam/controller.h"
 #include "gloam/log.h"
 #include "gloam/view.h"
 #include "handles.h"
@@ -51,6 +52,57 @@ LiveFieldId live_field(const std::string& name) {
   return *field;
 }
 
+void bind_joint_commands(nb::class_<Run>& c) {
+  constexpr int64_t kNext = Command::kNextStep;
+  const auto lease = nb::arg("lease").none() = nb::none();
+  c.def(
+      "set_joint_command",
+      [](Run& run, Robot robot, std::vector<Joint> joints, const nb::dict& targets, int64_t step,
+         ControlLease* l) {
+        SetJointCommand command{robot, std::move(joints)};
+        const auto take_field = [&](const char* name, std::vector<double>* field) {
+          if (targets.contains(name)) *field = doubles(targets[name]);
+        };
+        take_field("position", &command.position);
+        take_field("velocity", &command.velocity);
+        take_field("effort", &command.effort);
+        take_field("kp", &command.kp);
+        take_field("kd", &command.kd);
+        post(run, std::move(command), step, l);
+      },
+      nb::arg("robot"), nb::arg("joints"), nb::arg("targets"), nb::arg("step") = kNext, lease);
+  c.def(
+      "set_controller",
+      [](Run& run, Robot robot, const std::string& toml, int64_t step, ControlLease* l) {
+        post(run, SetController{robot, take(parse_controller(toml))}, step, l);
+      },
+      nb::arg("robot"), nb::arg("toml"), nb::arg("step") = kNext, lease);
+  c.def(
+      "follow",
+      [](Run& run, Robot robot, std::vector<Joint> joints, const nb::list& points,
+         const std::string& profile, nb::handle max_velocity, nb::handle max_acceleration,
+         int64_t step, ControlLease* l) {
+        FollowTrajectory command{robot, std::move(joints), {}};
+        command.trajectory.profile = take(profile_named(profile));
+        command.trajectory.max_velocity = doubles(max_velocity);
+        command.trajectory.max_acceleration = doubles(max_acceleration);
+        for (const nb::handle point : points) {
+          const auto row = nb::cast<nb::tuple>(point);
+          command.trajectory.points.push_back(
+              {nb::cast<double>(row[0]), doubles(row[1]), doubles(row[2]), doubles(row[3])});
+        }
+        post(run, std::move(command), step, l);
+      },
+      nb::arg("robot"), nb::arg("joints"), nb::arg("points"), nb::arg("profile"),
+      nb::arg("max_velocity"), nb::arg("max_acceleration"), nb::arg("step") = kNext, lease);
+  c.def(
+      "stop_trajectory",
+      [](Run& run, Robot robot, int64_t step, ControlLease* l) {
+        post(run, StopTrajectory{robot}, step, l);
+      },
+      nb::arg("robot"), nb::arg("step") = kNext, lease);
+}
+
 void bind_commands(nb::class_<Run>& c) {
   constexpr int64_t kNext = Command::kNextStep;
   const auto lease = nb::arg("lease").none() = nb::none();
@@ -69,8 +121,10 @@ void bind_commands(nb::class_<Run>& c) {
   c.def(
       "set_velocity_goal",
       [](Run& run, Robot robot, nb::handle goal, int64_t step, ControlLease* l) {
-        const Vec3 v = vec3(goal, "a velocity goal (vx, vy, yaw rate)");
-        post(run, SetVelocityGoal{robot, v.x, v.y, v.z}, step, l);
+        const std::vector<double> v = doubles(goal);
+        if (v.size() != 4)
+          throw nb::value_error("a velocity goal has four numbers: vx, vy, yaw rate, vz");
+        post(run, SetVelocityGoal{robot, v[0], v[1], v[2], v[3]}, step, l);
       },
       nb::arg("robot"), nb::arg("goal"), nb::arg("step") = kNext, lease);
   c.def(
@@ -79,6 +133,12 @@ void bind_commands(nb::class_<Run>& c) {
         post(run, SetJointGoal{joint, position}, step, l);
       },
       nb::arg("joint"), nb::arg("position"), nb::arg("step") = kNext, lease);
+  c.def(
+      "set_pose_goal",
+      [](Run& run, Robot robot, nb::handle X_WF, int64_t step, ControlLease* l) {
+        post(run, SetPoseGoal{robot, pose(X_WF)}, step, l);
+      },
+      nb::arg("robot"), nb::arg("pose"), nb::arg("step") = kNext, lease);
   c.def(
       "set_joint_state",
       [](Run& run, Joint joint, nb::object qpos, nb::object qvel, int64_t step) {
@@ -144,6 +204,23 @@ nb::dict stats_dict(Run& run) {
   made["warnings"] = stats.warnings;
   made["pace"] = to_string(stats.pace);
   made["sensors"] = sensor_dicts(stats.sensors);
+  return made;
+}
+
+// None: the robot has no actuator models.
+nb::object actuator_readings(Run& run, Robot robot) {
+  const Snapshot now = run.latest();
+  const ActuatorOutputs* outputs = now.actuators(robot);
+  if (outputs == nullptr) return nb::none();
+  nb::dict made, temperatures;
+  for (const DriveOutput& drive : outputs->drives)
+    temperatures[nb::int_(drive.actuator)] = drive.temperature;
+  made["voltage"] = outputs->voltage;
+  made["current"] = outputs->current;
+  made["charge"] = outputs->charge;
+  made["power"] = outputs->power;
+  made["energy"] = outputs->energy;
+  made["temperatures"] = temperatures;
   return made;
 }
 
@@ -265,6 +342,7 @@ void bind_simulation(nb::module_& m) {
       .def_prop_ro("memory", [](Run& r) { return PhysicsMemory(r.memory()); })
       .def_prop_ro("generation", &Run::generation)
       .def_prop_ro("stats", &stats_dict)
+      .def("actuator_readings", &actuator_readings)
       .def_prop_ro("time", [](Run& r) { return r.latest().time(); })
       .def_prop_ro("step_count", [](Run& r) { return r.latest().step(); })
       .def_prop_ro("hash", [](Run& r) { return r.latest().hash(); })
@@ -294,6 +372,7 @@ void bind_simulation(nb::module_& m) {
         return label_rows(take(without_gil([&] { return r.simulation().labels(); })));
       });
   bind_commands(run);
+  bind_joint_commands(run);
   bind_view(m);
 }
 

@@ -6,6 +6,7 @@
 #include "gloam/log_export.h"
 #include "gloam/model_tools.h"
 #include "gloam/report.h"
+#include "gloam/scene.h"
 #include "gloam/trajectory.h"
 #include "gloam/view.h"
 
@@ -154,9 +155,52 @@ nb::dict evaluate(const Trajectory& estimate, const Trajectory& reference,
   return made;
 }
 
+nb::dict robot_dict(const RobotModelInfo& robot) {
+  nb::dict sensors;
+  for (const RobotModelSensor& sensor : robot.sensors) sensors[sensor.name.c_str()] = sensor.kind;
+  nb::dict made;
+  made["name"] = robot.name;
+  made["description"] = robot.description;
+  made["file"] = robot.file;
+  made["model"] = robot.defaults.file;
+  made["keyframe"] = robot.defaults.keyframe;
+  made["controller"] = robot.defaults.controller.type;
+  made["sensors"] = sensors;
+  made["joints"] = robot.joints;
+  made["actuators"] = robot.actuators;
+  made["floating"] = robot.is_floating;
+  made["mass"] = robot.mass;
+  return made;
+}
+
+void bind_robots(nb::module_& m) {
+  m.def("robot_models", [] {
+    nb::list list;
+    for (const RobotModelInfo& robot : take(without_gil([] { return robot_models(); })))
+      list.append(robot_dict(robot));
+    return list;
+  });
+  m.def(
+      "robot_model",
+      [](const std::string& model, const std::filesystem::path& root, bool strict) {
+        const FileAccess access{.root = root, .strict = strict};
+        return robot_dict(take(without_gil([&] { return robot_model(model, access); })));
+      },
+      nb::arg("model"), nb::arg("root") = std::filesystem::path(), nb::arg("strict") = false);
+  m.def(
+      "guess_robot",
+      [](const std::filesystem::path& file, const std::filesystem::path& root, bool strict) {
+        const FileAccess access{.root = root, .strict = strict};
+        const RobotGuess guess = take(without_gil([&] { return guess_robot(file, access); }));
+        return nb::make_tuple(guess.kind, guess.toml);
+      },
+      nb::arg("file"), nb::arg("root") = std::filesystem::path(), nb::arg("strict") = false);
+}
+
 }  // namespace
 
 void bind_tools(nb::module_& m) {
+  bind_robots(m);
   nb::class_<Trajectory>(m, "Trajectory")
       .def_static(
           "read",

@@ -1,6 +1,7 @@
 #include "topics/input_echoes.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "ros/messages/sensor_msgs.h"
 #include "topics/ros_values.h"
@@ -17,6 +18,34 @@ const T* last_of(const AppliedCommands& applied, const auto& fits) {
   return last;
 }
 
+// Targets that Commands gave the joints `ids` of a robot, which are all its hinges and slides.
+std::vector<JointTarget> targets_of(std::span<const Command> commands, int robot,
+                                    const std::vector<int>& ids) {
+  std::vector<JointTarget> targets(ids.size());
+  const auto find = [&](int joint) -> JointTarget* {
+    const auto found = std::ranges::find(ids, joint);
+    return found == ids.end() ? nullptr : &targets[static_cast<size_t>(found - ids.begin())];
+  };
+  const auto set = [&](const SetJointCommand& c, const std::vector<double>& values,
+                       double JointTarget::* field) {
+    for (size_t i = 0; i < values.size(); ++i) {
+      JointTarget* const target = find(c.joints.empty() ? ids[i] : c.joints[i].id);
+      if (target != nullptr) target->*field = values[i];
+    }
+  };
+  for (const Command& command : commands) {
+    if (const auto* goal = std::get_if<SetJointGoal>(&command.what)) {
+      if (JointTarget* const target = find(goal->joint.id)) target->position = goal->position;
+    } else if (const auto* given = std::get_if<SetJointCommand>(&command.what);
+               given != nullptr && given->robot.id == robot) {
+      set(*given, given->position, &JointTarget::position);
+      set(*given, given->velocity, &JointTarget::velocity);
+      set(*given, given->effort, &JointTarget::effort);
+    }
+  }
+  return targets;
+}
+
 }  // namespace
 
 InputEcho velocity_echo(int robot) {
@@ -24,25 +53,46 @@ InputEcho velocity_echo(int robot) {
     const auto* goal = last_of<SetVelocityGoal>(
         applied, [robot](const SetVelocityGoal& c) { return c.robot.id == robot; });
     if (goal == nullptr) return false;
-    encode(geometry_msgs::Twist{{goal->vx, goal->vy, 0}, {0, 0, goal->yaw_rate}}, out);
+    encode(geometry_msgs::Twist{{goal->vx, goal->vy, goal->vz}, {0, 0, goal->yaw_rate}}, out);
     return true;
   };
 }
 
-InputEcho joint_command_echo(std::vector<int> ids, std::vector<std::string> names) {
-  return [ids = std::move(ids), names = std::move(names)](const AppliedCommands& applied,
-                                                          MessageBytes* out) {
+InputEcho joint_command_echo(int robot, std::vector<int> ids, std::vector<std::string> names) {
+  return [robot, ids = std::move(ids), names = std::move(names)](const AppliedCommands& applied,
+                                                                 MessageBytes* out) {
+    const std::vector<JointTarget> targets = targets_of(applied.commands, robot, ids);
     sensor_msgs::JointState message;
     message.header = ros_header(applied.time, "");
+    const auto is_set = [&](double JointTarget::* field) {
+      return std::ranges::any_of(targets, [&](const auto& t) { return std::isfinite(t.*field); });
+    };
+    const auto add = [&](double JointTarget::* field, size_t i, std::vector<double>* to) {
+      if (is_set(field)) to->push_back(targets[i].*field);
+    };
     for (size_t i = 0; i < ids.size(); ++i) {
-      const auto* goal = last_of<SetJointGoal>(
-          applied, [&](const SetJointGoal& c) { return c.joint.id == ids[i]; });
-      if (goal == nullptr) continue;
+      const JointTarget& t = targets[i];
+      if (!std::isfinite(t.position) && !std::isfinite(t.velocity) && !std::isfinite(t.effort))
+        continue;
       message.name.push_back(names[i]);
-      message.position.push_back(goal->position);
+      add(&JointTarget::position, i, &message.position);
+      add(&JointTarget::velocity, i, &message.velocity);
+      add(&JointTarget::effort, i, &message.effort);
     }
     if (message.name.empty()) return false;
     encode(message, out);
+    return true;
+  };
+}
+
+InputEcho pose_goal_echo(int robot) {
+  return [robot](const AppliedCommands& applied, MessageBytes* out) {
+    const auto* goal = last_of<SetPoseGoal>(
+        applied, [robot](const SetPoseGoal& c) { return c.robot.id == robot; });
+    if (goal == nullptr) return false;
+    encode(
+        geometry_msgs::PoseStamped{ros_header(applied.time, kWorldFrameId), ros_pose(goal->X_WF)},
+        out);
     return true;
   };
 }

@@ -9,10 +9,13 @@
 
 namespace gloam {
 
-/// JointState with the positions of goals; `ids` and `names` are those of the robot's joints.
-InputEcho joint_command_echo(std::vector<int> ids, std::vector<std::string> names);
+/// JointState with the targets that were set, NaN where a joint got another kind only; `ids` and
+/// `names` are those of the robot's hinges and slides.
+InputEcho joint_command_echo(int robot, std::vector<int> ids, std::vector<std::string> names);
 /// Twist of the last velocity goal.
 InputEcho velocity_echo(int robot);
+/// PoseStamped of the last pose goal.
+InputEcho pose_goal_echo(int robot);
 /// Float64MultiArray of all controls of a robot, if one of them was set; `places` in mjData::ctrl.
 InputEcho controls_echo(std::vector<int> places);
 /// PoseWithCovarianceStamped of a free joint that was put elsewhere.

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "base/text.h"
+#include "gloam/controller.h"
 #include "ros/messages/sensor_msgs.h"
 #include "ros/messages/trajectory_msgs.h"
 #include "ros/trajectory_check.h"
@@ -25,15 +26,24 @@ using InputBytes = std::span<const uint8_t>;
 using Commands = Result<std::vector<Command>>;
 
 /// Joints of one robot that have one number, by their local names.
-struct RobotJoints {
+struct JointsByName {
   std::string robot;
-  uint64_t world = 0;
+  Robot handle;
   std::vector<std::string> names;
   std::vector<int> ids;
 
+  Joint joint(size_t i) const { return {ids[i], handle.world}; }
+  Result<std::vector<Joint>> find(const std::vector<std::string>& wanted) const {
+    std::vector<Joint> joints;
+    for (const std::string& name : wanted) {
+      GLOAM_TRY(const Joint joint, find(name));
+      joints.push_back(joint);
+    }
+    return joints;
+  }
   Result<Joint> find(const std::string& name) const {
     const auto found = std::find(names.begin(), names.end(), name);
-    if (found != names.end()) return Joint{ids[static_cast<size_t>(found - names.begin())], world};
+    if (found != names.end()) return joint(static_cast<size_t>(found - names.begin()));
     return Error{ErrorKind::kInput,
                  fmt::format("robot '{}' has no hinge or slide joint '{}'", robot, name),
                  {},
@@ -41,8 +51,9 @@ struct RobotJoints {
   }
 };
 
-RobotJoints joints_by_name(const CompiledWorld& world, const RobotInstance& robot) {
-  RobotJoints joints{robot.name, world.serial, {}, {}};
+JointsByName joints_by_name(const CompiledWorld& world, Robot handle) {
+  const RobotInstance& robot = world.robots[static_cast<size_t>(handle.id)];
+  JointsByName joints{robot.name, handle, {}, {}};
   const mjModel& m = *world.model;
   for (const int id : robot_joints(m, robot)) {
     if (m.jnt_type[id] != mjJNT_HINGE && m.jnt_type[id] != mjJNT_SLIDE) continue;
@@ -57,8 +68,8 @@ Command now(auto what) { return Command{.what = std::move(what)}; }
 InputDecoder velocity(Robot robot) {
   return [robot](InputBytes bytes, const Snapshot&, double) -> Commands {
     GLOAM_TRY(const auto twist, decode<geometry_msgs::Twist>(bytes));
-    return std::vector{
-        now(SetVelocityGoal{robot, twist.linear.x, twist.linear.y, twist.angular.z})};
+    return std::vector{now(
+        SetVelocityGoal{robot, twist.linear.x, twist.linear.y, twist.angular.z, twist.linear.z})};
   };
 }
 
@@ -66,8 +77,8 @@ InputDecoder stamped_velocity(Robot robot) {
   return [robot](InputBytes bytes, const Snapshot&, double) -> Commands {
     GLOAM_TRY(const auto message, decode<geometry_msgs::TwistStamped>(bytes));
     const geometry_msgs::Twist& twist = message.twist;
-    return std::vector{
-        now(SetVelocityGoal{robot, twist.linear.x, twist.linear.y, twist.angular.z})};
+    return std::vector{now(
+        SetVelocityGoal{robot, twist.linear.x, twist.linear.y, twist.angular.z, twist.linear.z})};
   };
 }
 
@@ -76,69 +87,57 @@ Status check_lengths(const std::string& what, size_t names, size_t values) {
   return Error{ErrorKind::kInput, fmt::format("{}: {} names, but {} numbers", what, names, values)};
 }
 
-InputDecoder joint_command(RobotJoints joints) {
+Status check_finite(const std::string& what, std::span<const double> values) {
+  if (std::ranges::all_of(values, [](double v) { return std::isfinite(v); })) return {};
+  return Error{ErrorKind::kInput, fmt::format("{}: a number is not finite", what)};
+}
+
+// Positions, velocities and efforts, of which a message may leave out two.
+InputDecoder joint_command(JointsByName joints) {
   return [joints = std::move(joints)](InputBytes bytes, const Snapshot&, double) -> Commands {
-    GLOAM_TRY(const auto state, decode<sensor_msgs::JointState>(bytes));
-    GLOAM_TRY_STATUS(check_lengths("joint_command", state.name.size(), state.position.size()));
-    if (!state.name.empty()) GLOAM_TRY_STATUS(check_joint_names(state.name));
-    std::vector<Command> commands;
-    for (size_t i = 0; i < state.name.size(); ++i) {
-      GLOAM_TRY(const Joint joint, joints.find(state.name[i]));
-      commands.push_back(now(SetJointGoal{joint, state.position[i]}));
-    }
-    return commands;
+    GLOAM_TRY(auto state, decode<sensor_msgs::JointState>(bytes));
+    const bool is_empty = state.velocity.empty() && state.effort.empty();
+    if (is_empty && state.name.empty() && state.position.empty()) return std::vector<Command>();
+    GLOAM_TRY_STATUS(check_joint_names(state.name));
+    if (is_empty || !state.position.empty())
+      GLOAM_TRY_STATUS(check_lengths("joint_command", state.name.size(), state.position.size()));
+    for (const auto* values : {&state.position, &state.velocity, &state.effort})
+      GLOAM_TRY_STATUS(check_finite("joint_command", *values));
+    GLOAM_TRY(auto named, joints.find(state.name));
+    return std::vector{
+        now(SetJointCommand{joints.handle, std::move(named), std::move(state.position),
+                            std::move(state.velocity), std::move(state.effort)})};
   };
 }
 
 // Goals of all joints, in their order.
-InputDecoder position_commands(RobotJoints joints) {
+InputDecoder position_commands(JointsByName joints) {
   return [joints = std::move(joints)](InputBytes bytes, const Snapshot&, double) -> Commands {
-    GLOAM_TRY(const auto message, decode<std_msgs::Float64MultiArray>(bytes));
+    GLOAM_TRY(auto message, decode<std_msgs::Float64MultiArray>(bytes));
     GLOAM_TRY_STATUS(check_lengths("position_commands", joints.names.size(), message.data.size()));
-    std::vector<Command> commands;
-    for (size_t i = 0; i < message.data.size(); ++i)
-      commands.push_back(now(SetJointGoal{{joints.ids[i], joints.world}, message.data[i]}));
-    return commands;
+    GLOAM_TRY_STATUS(check_finite("position_commands", message.data));
+    return std::vector{now(SetJointCommand{joints.handle, {}, std::move(message.data)})};
   };
 }
 
-/// Seconds between the goals that a trajectory is cut into.
-constexpr double kGoalInterval = 0.02;
-constexpr int32_t kLongestTrajectory = 60;  // [s]
-
-// One joint's goals along the straight lines between the points, from where it is now.
-void add_goals(const trajectory_msgs::JointTrajectory& way, size_t column, Joint joint,
-               const Snapshot& now, double timestep, std::vector<Command>* commands) {
-  double from_time = 0, from = now[joint].position();
-  for (const auto& point : way.points) {
-    const double to_time = point.time_from_start.sec + 1e-9 * point.time_from_start.nanosec;
-    const double to = point.positions[column], length = to_time - from_time;
-    const int count = std::max(1, static_cast<int>(std::ceil(length / kGoalInterval)));
-    for (int i = 1; i <= count; ++i) {
-      const double share = static_cast<double>(i) / count;
-      const double time = from_time + share * length;
-      commands->push_back({now.step() + std::llround(time / timestep),
-                           SetJointGoal{joint, from + share * (to - from)}});
-    }
-    from_time = to_time;
-    from = to;
-  }
-}
-
-InputDecoder joint_trajectory(RobotJoints joints) {
+InputDecoder joint_trajectory(JointsByName joints) {
   return [joints = std::move(joints)](InputBytes bytes, const Snapshot& now,
                                       double timestep) -> Commands {
-    GLOAM_TRY(const auto way, decode<trajectory_msgs::JointTrajectory>(bytes));
-    GLOAM_TRY_STATUS(check_joint_names(way.joint_names));
-    GLOAM_TRY_STATUS(check_points(way));
-    if (way.points.back().time_from_start.sec >= kLongestTrajectory)
-      return Error{ErrorKind::kInput, "joint_trajectory: the trajectory is longer than 60 s"};
-    std::vector<Command> commands;
-    for (size_t i = 0; i < way.joint_names.size(); ++i) {
-      GLOAM_TRY(const Joint joint, joints.find(way.joint_names[i]));
-      add_goals(way, i, joint, now, timestep, &commands);
-    }
-    return commands;
+    GLOAM_TRY(const auto message, decode<trajectory_msgs::JointTrajectory>(bytes));
+    GLOAM_TRY_STATUS(check_joint_names(message.joint_names));
+    GLOAM_TRY(auto trajectory, joint_trajectory_of(message));
+    GLOAM_TRY(auto named, joints.find(message.joint_names));
+    return std::vector{
+        Command{start_step(message, now.time(), timestep),
+                FollowTrajectory{joints.handle, std::move(named), std::move(trajectory)}}};
+  };
+}
+
+InputDecoder set_controller(Robot robot) {
+  return [robot](InputBytes bytes, const Snapshot&, double) -> Commands {
+    GLOAM_TRY(const auto message, decode<std_msgs::String>(bytes));
+    GLOAM_TRY(auto options, parse_controller(message.data));
+    return std::vector{now(SetController{robot, std::move(options)})};
   };
 }
 
@@ -162,6 +161,14 @@ InputDecoder mocap_pose(Body body) {
     GLOAM_TRY(const auto pose, decode<geometry_msgs::PoseStamped>(bytes));
     GLOAM_TRY_STATUS(check_frame(pose.header));
     return std::vector{now(SetMocapPose{body, from_ros(pose.pose)})};
+  };
+}
+
+InputDecoder pose_goal(Robot robot) {
+  return [robot](InputBytes bytes, const Snapshot&, double) -> Commands {
+    GLOAM_TRY(const auto goal, decode<geometry_msgs::PoseStamped>(bytes));
+    GLOAM_TRY_STATUS(check_frame(goal.header));
+    return std::vector{now(SetPoseGoal{robot, from_ros(goal.pose)})};
   };
 }
 
@@ -230,13 +237,18 @@ void add_input_topics(const TopicSource& world, TopicTable* table) {
                 velocity_echo(handle.id), table);
       add_input(space + "/cmd_vel_stamped", type_name<geometry_msgs::TwistStamped>(), source,
                 stamped_velocity(handle), {}, table);
-      const RobotJoints joints = joints_by_name(*world, robot);
+      const JointsByName joints = joints_by_name(*world, handle);
       add_input(space + "/joint_command", type_name<sensor_msgs::JointState>(), source,
-                joint_command(joints), joint_command_echo(joints.ids, joints.names), table);
+                joint_command(joints), joint_command_echo(handle.id, joints.ids, joints.names),
+                table);
       add_input(space + "/joint_trajectory", type_name<trajectory_msgs::JointTrajectory>(), source,
                 joint_trajectory(joints), {}, table);
       add_input(space + "/position_commands", type_name<std_msgs::Float64MultiArray>(), source,
                 position_commands(joints), {}, table);
+      add_input(space + "/pose_goal", type_name<geometry_msgs::PoseStamped>(), source,
+                pose_goal(handle), pose_goal_echo(handle.id), table);
+      add_input(space + "/set_controller", type_name<std_msgs::String>(), source,
+                set_controller(handle), {}, table);
     }
     if (const std::vector<int> actuators = robot_actuators(m, robot); !actuators.empty())
       add_input(space + "/controls", type_name<std_msgs::Float64MultiArray>(), source,

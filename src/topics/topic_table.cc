@@ -17,9 +17,10 @@ namespace {
 
 // A new kind of topics is a line here.
 constexpr void (*kKinds[])(const TopicSource&, TopicTable*) = {
-    add_world_topics,  add_metric_topics, add_air_topics,    add_diagnostic_topics,
-    add_object_topics, add_robot_topics,  add_sensor_topics, add_camera_topics,
-    add_label_topics,  add_lidar_topics,  add_input_topics,  add_object_scene_topics,
+    add_world_topics,        add_metric_topics, add_air_topics,      add_diagnostic_topics,
+    add_object_topics,       add_robot_topics,  add_actuator_topics, add_sensor_topics,
+    add_camera_topics,       add_label_topics,  add_lidar_topics,    add_input_topics,
+    add_object_scene_topics,
 };
 
 std::vector<std::string> names_of(const TopicTable& table) {

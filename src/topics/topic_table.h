@@ -25,6 +25,7 @@ void add_metric_topics(const TopicSource& world, TopicTable* table);
 void add_air_topics(const TopicSource& world, TopicTable* table);
 void add_diagnostic_topics(const TopicSource& world, TopicTable* table);
 void add_robot_topics(const TopicSource& world, TopicTable* table);
+void add_actuator_topics(const TopicSource& world, TopicTable* table);
 void add_sensor_topics(const TopicSource& world, TopicTable* table);
 void add_camera_topics(const TopicSource& world, TopicTable* table);
 void add_label_topics(const TopicSource& world, TopicTable* table);

@@ -18,6 +18,7 @@ namespace {
 constexpr size_t kLongestModel = size_t{16} << 20;  // [bytes]
 constexpr size_t kMostText = size_t{256} << 20;     // of all models that were texts [bytes]
 constexpr size_t kLongestAddress = 4000;
+constexpr const char* kRobotEntry = "robot.toml";  // docs/robots.md
 constexpr std::string_view kFileScheme = "file://", kPackageScheme = "package://";
 constexpr std::string_view kOwnScheme = "gloam://", kPropFolder = "gloam://prop/";
 
@@ -104,6 +105,8 @@ Status check_as_scene_would(const fs::path& file, const Scene& scene) {
   only.access = scene.access;
   if (is_mesh_extension(lower_extension_of(file))) {
     only.objects.push_back({.name = "it", .file = file});
+  } else if (file.filename() == kRobotEntry) {
+    only.robots.push_back({.name = "it", .model = file.string()});
   } else {
     only.robots.push_back({.name = "it", .file = file});
   }
@@ -216,6 +219,11 @@ Result<SceneEntity> ModelSource::find(const SpawnRequest& request, const Scene& 
       return refuse(failure, SpawnFailure::kUnsupportedFormat,
                     fmt::format("'{}' files are not supported", extension),
                     "use MJCF, URDF, glTF, OBJ, STL or PLY");
+    if (path->filename() == kRobotEntry) {
+      robot.model = path->string();
+      *model_name = path->parent_path().filename().string();
+      return SceneEntity(robot);
+    }
     robot.file = *path;
     if (extension == ".toml") return SceneEntity(robot);
     std::ifstream in(*path, std::ios::binary);

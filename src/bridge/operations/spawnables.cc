@@ -29,7 +29,12 @@ void list_models(const fs::path& folder, std::vector<Spawnable>* list) {
   std::ranges::sort(files);
   for (const fs::path& file : files) {
     const bool is_mesh = is_mesh_extension(file.extension().string());
-    list->push_back({"file://" + file.string(), is_mesh ? "mesh, spawned as a body" : "model", {}});
+    const bool is_robot = file.filename() == "robot.toml";
+    list->push_back({"file://" + file.string(),
+                     is_mesh    ? "mesh, spawned as a body"
+                     : is_robot ? "robot with controller"
+                                : "model",
+                     {}});
   }
 }
 

@@ -15,9 +15,13 @@ const SetVelocityGoal* velocity_goal(const Command& command) {
 }
 
 bool is_drive(const Command& command) {
-  return velocity_goal(command) != nullptr || std::get_if<SetControl>(&command.what) != nullptr ||
-         std::get_if<SetControls>(&command.what) != nullptr ||
-         std::get_if<SetJointGoal>(&command.what) != nullptr;
+  return std::visit(
+      [](const auto& what) {
+        using T = std::decay_t<decltype(what)>;
+        return requires { what.robot; } || std::is_same_v<T, SetControl> ||
+               std::is_same_v<T, SetJointGoal>;
+      },
+      command.what);
 }
 
 // "robot go1" -> "go1".
@@ -87,7 +91,7 @@ Status TopicInlets::obey_as_master(const std::string& robot, const std::string& 
   GLOAM_TRY_STATUS(master.lease->post(commands));
   for (const Command& command : commands)
     if (const SetVelocityGoal* goal = velocity_goal(command))
-      master.has_velocity = goal->vx != 0 || goal->vy != 0 || goal->yaw_rate != 0;
+      master.has_velocity = goal->vx != 0 || goal->vy != 0 || goal->yaw_rate != 0 || goal->vz != 0;
   return {};
 }
 

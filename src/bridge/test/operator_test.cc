@@ -408,6 +408,7 @@ TEST_F(OperatorTest, NamesPosesAndSpawnables) {
   };
   EXPECT_TRUE(has("prop/chair"));
   EXPECT_TRUE(has("quadruped.xml"));
+  EXPECT_TRUE(has("quadruped/robot.toml"));
   EXPECT_TRUE(has("/d/arm.xml"));
 }
 

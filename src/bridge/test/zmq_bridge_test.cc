@@ -197,6 +197,16 @@ TEST_F(ZmqBridgeTest, CommandsMoveWhatTheyName) {
                   .text(),
               HasSubstr("cart/lift"));
   client.refused("velocity_goal", 1, one("robot", std::string("nobody")));
+  static_cast<void>(simulation_->take_command_log());
+  client.call("pose_goal", 3, [](Packer& packer) {
+    pack_pair(packer, "robot", std::string("cart"));
+    pack_pair(packer, "position", std::vector<double>{0.1, 0.2, 0.3});
+    pack_pair(packer, "orientation", std::vector<double>{0, 0, 1, 0});
+  });
+  client.call("step", 1, one("n", 1));
+  const auto log = simulation_->take_command_log();
+  ASSERT_EQ(log.size(), 1u);
+  EXPECT_EQ(std::get<SetPoseGoal>(log[0].command.what).X_WF, (Pose{{0.1, 0.2, 0.3}, {0, 0, 1, 0}}));
 }
 
 TEST_F(ZmqBridgeTest, MessagesToInputTopicsAreObeyed) {

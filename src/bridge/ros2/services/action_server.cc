@@ -33,13 +33,14 @@ struct ActionServer::Goal {
   int8_t status = GoalStatus::STATUS_ACCEPTED;  // with what follows under the server's mutex
   std::vector<uint8_t> response;
   std::vector<Reply> replies;
-  std::atomic<bool> cancelled{false};
+  std::atomic<bool> cancelled{false}, replaced{false};
 };
 
 class ActionServer::Context final : public GoalContext {
  public:
   Context(ActionServer& server, Goal& goal) : server_(server), goal_(goal) {}
   bool is_cancelled() const override { return goal_.cancelled; }
+  bool is_replaced() const override { return goal_.replaced; }
   void feedback(std::span<const uint8_t> message) override {
     server_.publish_(server_.options_.name + "/_action/feedback", message);
   }
@@ -91,7 +92,7 @@ Result<std::vector<uint8_t>> ActionServer::send_goal(std::span<const uint8_t> by
   } else if (!refused) {
     for (const auto& [id, goal] : goals_) {
       if (is_end(goal->status)) continue;
-      goal->cancelled = true;
+      goal->replaced = goal->cancelled = true;
       goal->status = GoalStatus::STATUS_CANCELING;
     }
     const auto goal = std::make_shared<Goal>();

@@ -24,6 +24,8 @@ class GoalContext {
   virtual ~GoalContext() = default;
   /// Asked to end: by its client, by a newer goal, or since the server ends.
   virtual bool is_cancelled() const = 0;
+  /// A newer goal is why.
+  virtual bool is_replaced() const = 0;
   /// Publishes a FeedbackMessage as CDR.
   virtual void feedback(std::span<const uint8_t> message) = 0;
   virtual const GoalId& id() const = 0;

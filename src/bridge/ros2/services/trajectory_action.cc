@@ -6,6 +6,7 @@
 #include "bridge/ros2/services/trajectory_run.h"
 #include "bridge/ros2/services/typed_service.h"
 #include "ros/codec.h"
+#include "ros/trajectory_check.h"
 
 namespace gloam::bridge {
 namespace {
@@ -64,8 +65,10 @@ Ros2Action trajectory_action(Simulation& simulation, const std::string& robot, i
                     interfaces](std::span<const uint8_t> bytes) -> Result<GoalRequest> {
     GLOAM_TRY(auto request, decode<fjt::FollowJointTrajectory_SendGoal_Request>(bytes));
     GoalRequest goal{.id = request.goal_id.uuid};
-    Result<JointWay> way = JointWay::make(request.goal.trajectory);
-    if (!way.ok() || !request.goal.multi_dof_trajectory.points.empty())
+    Result<JointTrajectory> trajectory = joint_trajectory_of(request.goal.trajectory);
+    // Joints that are missing are answered below.
+    const bool has_joints = !request.goal.trajectory.joint_names.empty();
+    if ((!trajectory.ok() && has_joints) || !request.goal.multi_dof_trajectory.points.empty())
       return goal;  // refused, as joint_trajectory_controller does
     // Accepted and aborted, so that its client learns which joint is wrong.
     if (const auto joints =
@@ -77,7 +80,7 @@ Ros2Action trajectory_action(Simulation& simulation, const std::string& robot, i
       return goal;
     }
     const auto run = std::make_shared<TrajectoryRun>(simulation, robot, interfaces, request.goal,
-                                                     std::move(*way));
+                                                     std::move(*trajectory));
     goal.run = [run](GoalContext& context) { return run->run(context); };
     return goal;
   };

@@ -17,8 +17,6 @@ namespace fjt = control_msgs::action;
 using JointResult = fjt::FollowJointTrajectory_Result;
 using GoalState = action_msgs::GoalStatus;
 
-constexpr double kGoalPeriod = 0.02;     // between goals of joints [s]
-constexpr double kGoalLookahead = 0.1;   // goals that are under way [s]
 constexpr double kLongestSettling = 10;  // where the goal names no time for it [s]
 constexpr double kFeedbackRate = 50;     // looks at the joints, and feedback [Hz]
 
@@ -69,12 +67,14 @@ std::vector<TrajectoryRun::Tolerance> TrajectoryRun::tolerances_of(
 }
 
 TrajectoryRun::TrajectoryRun(Simulation& simulation, std::string robot, int interfaces,
-                             const fjt::FollowJointTrajectory_Goal& goal, JointWay way)
+                             const fjt::FollowJointTrajectory_Goal& goal,
+                             JointTrajectory trajectory)
     : simulation_(simulation),
       robot_(std::move(robot)),
       interfaces_(interfaces),
       names_(goal.trajectory.joint_names),
-      way_(std::move(way)),
+      trajectory_(std::move(trajectory)),
+      message_{goal.trajectory.header, {}, {}},
       path_(tolerances_of(goal.path_tolerance, names_)),
       goal_(tolerances_of(goal.goal_tolerance, names_)),
       stamp_(goal.trajectory.header.stamp.sec + 1e-9 * goal.trajectory.header.stamp.nanosec) {
@@ -84,23 +84,32 @@ TrajectoryRun::TrajectoryRun(Simulation& simulation, std::string robot, int inte
 }
 
 GoalEnd TrajectoryRun::run(GoalContext& context) {
+  GoalEnd end = watch(context);
+  // A newer goal continues from this one's motion; after any other end but success, joints hold.
+  if (end.status != GoalState::STATUS_SUCCEEDED && !context.is_replaced() && lease_ != nullptr)
+    if (const auto robot = simulation_.world().find_robot(robot_); robot.ok())
+      static_cast<void>(lease_->post(Command{.what = StopTrajectory{*robot}}));
+  return end;
+}
+
+GoalEnd TrajectoryRun::watch(GoalContext& context) {
   Snapshot now = simulation_.latest();
-  if (stamp_ > 0 && stamp_ + way_.end() < now.time())
+  if (stamp_ > 0 && stamp_ + trajectory_.points.back().time < now.time())
     return aborted(JointResult::OLD_HEADER_TIMESTAMP,
                    "the trajectory ended before it was received");
-  if (const Status begun = begin(now); !begun.ok())
-    return aborted(JointResult::INVALID_GOAL, begun.error().to_string());
+  const Rational steps = simulation_.step_rate();
+  rate_ = steps.value() > kFeedbackRate ? Rational{static_cast<int64_t>(kFeedbackRate), 1} : steps;
   SnapshotInbox inbox;
   const auto stream =
       simulation_.open_snapshots({.rate = rate_, .required = true, .capacity = 1},
                                  [&inbox](const Snapshot& snapshot) { inbox.put(snapshot); });
   if (!stream.ok()) return aborted(JointResult::INVALID_GOAL, stream.error().to_string());
   const InboxCloser closer{inbox};
-  bool has_started = false;  // at the first Snapshot of the stream: from then on none is missed
+  if (const Status begun = begin(now); !begun.ok())
+    return aborted(JointResult::INVALID_GOAL, begun.error().to_string());
   for (double before = now.time();;) {
-    if (context.is_cancelled()) return cancelled(now);
-    if (const Status posted = has_started ? post_ahead(now) : Status(); !posted.ok())
-      return aborted(JointResult::INVALID_GOAL, posted.error().to_string());
+    if (context.is_cancelled())
+      return trajectory_end(GoalState::STATUS_CANCELED, JointResult::SUCCESSFUL, "cancelled");
     const Snapshot next = inbox.take();
     if (!simulation_.status().ok())
       return aborted(JointResult::INVALID_GOAL, "the simulation has failed");
@@ -112,7 +121,6 @@ GoalEnd TrajectoryRun::run(GoalContext& context) {
         return aborted(JointResult::INVALID_JOINTS, found.error().to_string());
     }
     now = next;
-    if (!std::exchange(has_started, true)) start(now);
     if (const std::optional<GoalEnd> end = look(now, context)) return *end;
   }
 }
@@ -121,15 +129,10 @@ Status TrajectoryRun::begin(const Snapshot& now) {
   GLOAM_TRY_STATUS(find(now));
   GLOAM_TRY(const Robot robot, now.world().find_robot(robot_));
   GLOAM_TRY(lease_, simulation_.claim(robot));
-  timestep_ = 1 / simulation_.step_rate().value();
-  const Rational rate = simulation_.step_rate();
-  if (rate.value() > kFeedbackRate) rate_ = {static_cast<int64_t>(kFeedbackRate), 1};
-  return {};
-}
-
-void TrajectoryRun::start(const Snapshot& now) {
-  start_ = std::max(now.time(), stamp_);
-  for (const Joint joint : joints_) from_.push_back(now[joint].position());
+  const double timestep = 1 / simulation_.step_rate().value();
+  posted_step_ = now.step();
+  return lease_->post(Command{start_step(message_, now.time(), timestep),
+                              FollowTrajectory{robot, joints_, trajectory_}});
 }
 
 Status TrajectoryRun::find(const Snapshot& now) {
@@ -137,41 +140,26 @@ Status TrajectoryRun::find(const Snapshot& now) {
   return {};
 }
 
-Status TrajectoryRun::post_ahead(const Snapshot& now) {
-  const double until = std::min(now.time() - start_ + kGoalLookahead, way_.end());
-  std::vector<Command> commands;
-  while (posted_ < way_.end() && posted_ <= until) {
-    posted_ = std::min(posted_ + kGoalPeriod, way_.end());
-    const JointWayPoint point = way_.at(posted_, from_);
-    const double ahead = start_ + posted_ - now.time();
-    const int64_t step = now.step() + std::max<int64_t>(0, std::llround(ahead / timestep_));
-    for (size_t i = 0; i < joints_.size(); ++i)
-      commands.push_back({step, SetJointGoal{joints_[i], point.positions[i]}});
-  }
-  return commands.empty() ? Status() : lease_->post(commands);
-}
-
-GoalEnd TrajectoryRun::cancelled(const Snapshot& now) {
-  std::vector<Command> commands;
-  const int64_t ahead = std::llround((kGoalLookahead + kGoalPeriod) / timestep_);
-  for (const Joint joint : joints_)
-    for (const int64_t step : {now.step(), now.step() + ahead})
-      commands.push_back({step, SetJointGoal{joint, now[joint].position()}});
-  (void)lease_->post(commands);
-  return trajectory_end(GoalState::STATUS_CANCELED, JointResult::SUCCESSFUL, "cancelled");
-}
-
 std::optional<GoalEnd> TrajectoryRun::look(const Snapshot& now, GoalContext& context) {
-  const double time = now.time() - start_;
-  if (time < 0) return {};
-  const JointWayPoint desired = way_.at(time, from_);
-  tell(now, desired, context);
-  const bool is_over = time >= way_.end();
-  const std::vector<Tolerance>& allowed = is_over ? goal_ : path_;
-  const std::string beyond = joint_beyond(now, desired, allowed);
+  const Result<Robot> robot = now.world().find_robot(robot_);
+  const auto active = robot.ok() ? now.trajectory(*robot) : nullptr;
+  const bool is_known = active != nullptr && active->joints.size() == joints_.size();
+  if (start_step_ < 0 && is_known && active->start_step >= posted_step_)
+    start_step_ = active->start_step;
+  if (start_step_ < 0) return {};
+  if (!is_known || active->start_step != start_step_)
+    return aborted(JointResult::INVALID_GOAL, "another command has ended the trajectory");
+  tell(now, *active, context);
+  return end_of(now, *active);
+}
+
+std::optional<GoalEnd> TrajectoryRun::end_of(const Snapshot& now,
+                                             const ActiveTrajectory& path) const {
+  const bool is_over = now.time() >= path.end_time();
+  const std::string beyond = joint_beyond(now, path, is_over ? goal_ : path_);
   if (is_over && beyond.empty())
     return trajectory_end(GoalState::STATUS_SUCCEEDED, JointResult::SUCCESSFUL, "");
-  if (is_over && time > way_.end() + settling_)
+  if (is_over && now.time() > path.end_time() + settling_)
     return aborted(JointResult::GOAL_TOLERANCE_VIOLATED,
                    "joint '" + beyond + "' did not reach its goal");
   if (!is_over && !beyond.empty())
@@ -180,12 +168,13 @@ std::optional<GoalEnd> TrajectoryRun::look(const Snapshot& now, GoalContext& con
   return {};
 }
 
-std::string TrajectoryRun::joint_beyond(const Snapshot& now, const JointWayPoint& desired,
+std::string TrajectoryRun::joint_beyond(const Snapshot& now, const ActiveTrajectory& path,
                                         const std::vector<Tolerance>& allowed) const {
   for (size_t i = 0; i < joints_.size(); ++i) {
     const JointState state = now[joints_[i]];
-    const double off = std::abs(state.position() - desired.positions[i]);
-    const double fast = std::abs(state.velocity() - desired.velocities[i]);
+    const JointSample desired = path.at(now.time(), i);
+    const double off = std::abs(state.position() - desired.position);
+    const double fast = std::abs(state.velocity() - desired.velocity);
     if ((allowed[i].position > 0 && off > allowed[i].position) ||
         (allowed[i].velocity > 0 && fast > allowed[i].velocity))
       return names_[i];
@@ -193,24 +182,26 @@ std::string TrajectoryRun::joint_beyond(const Snapshot& now, const JointWayPoint
   return {};
 }
 
-void TrajectoryRun::tell(const Snapshot& now, const JointWayPoint& desired, GoalContext& context) {
+void TrajectoryRun::tell(const Snapshot& now, const ActiveTrajectory& path, GoalContext& context) {
   fjt::FollowJointTrajectory_Feedback feedback;
   feedback.header.stamp = ros_time_of(now.time());
   feedback.joint_names = names_;
-  feedback.desired.positions = desired.positions;
-  feedback.desired.velocities = desired.velocities;
-  const auto time = ros_time_of(now.time() - start_);
+  const auto time = ros_time_of(now.time() - path.start_time);
   feedback.desired.time_from_start = {time.sec, time.nanosec};
   feedback.actual.time_from_start = feedback.error.time_from_start =
       feedback.desired.time_from_start;
   for (size_t i = 0; i < joints_.size(); ++i) {
     const JointState state = now[joints_[i]];
+    const JointSample desired = path.at(now.time(), i);
+    feedback.desired.positions.push_back(desired.position);
+    feedback.desired.velocities.push_back(desired.velocity);
+    feedback.desired.accelerations.push_back(desired.acceleration);
     feedback.actual.positions.push_back(state.position());
     feedback.actual.velocities.push_back(state.velocity());
-    feedback.error.positions.push_back(desired.positions[i] - state.position());
-    feedback.error.velocities.push_back(desired.velocities[i] - state.velocity());
+    feedback.error.positions.push_back(desired.position - state.position());
+    feedback.error.velocities.push_back(desired.velocity - state.velocity());
   }
-  feedback.index = static_cast<int32_t>(way_.segment(now.time() - start_));
+  feedback.index = static_cast<int32_t>(path.path.point_at(now.time() - path.start_time));
   std::vector<uint8_t> bytes;
   if (interfaces_ == 1) {
     namespace fjt5 = control_msgs_5::action;

@@ -1,6 +1,6 @@
 #pragma once
-// TrajectoryRun: one goal of FollowJointTrajectory while it is followed: goals of the joints are
-// posted a little ahead, the joints watched in Snapshots.
+// TrajectoryRun: one goal of FollowJointTrajectory: the simulation follows its trajectory, and the
+// joints are watched in Snapshots.
 
 #include <memory>
 #include <optional>
@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "bridge/ros2/services/action_server.h"
-#include "bridge/ros2/services/joint_way.h"
+#include "gloam/joints/joint_trajectory.h"
 #include "gloam/simulation.h"
 #include "ros/messages/control_msgs.h"
 
@@ -25,7 +25,8 @@ GoalEnd trajectory_end(int8_t status, int32_t code, std::string text);
 class TrajectoryRun {
  public:
   TrajectoryRun(Simulation& simulation, std::string robot, int interfaces,
-                const control_msgs::action::FollowJointTrajectory_Goal& goal, JointWay way);
+                const control_msgs::action::FollowJointTrajectory_Goal& goal,
+                JointTrajectory trajectory);
   GoalEnd run(GoalContext& context);
 
  private:
@@ -37,30 +38,28 @@ class TrajectoryRun {
                                               const std::vector<std::string>& joints);
 
   Status begin(const Snapshot& now);
-  // The trajectory starts here, from the present positions.
-  void start(const Snapshot& now);
   Status find(const Snapshot& now);
-  // The goals of the next moment that were not posted yet.
-  Status post_ahead(const Snapshot& now);
-  // Stands still where it is; goals that are under way come first.
-  GoalEnd cancelled(const Snapshot& now);
-  // The end of the goal, if this is it.
+  GoalEnd watch(GoalContext& context);
+  // The end of the goal, if this is it. Before its first step: none.
   std::optional<GoalEnd> look(const Snapshot& now, GoalContext& context);
-  std::string joint_beyond(const Snapshot& now, const JointWayPoint& desired,
+  std::optional<GoalEnd> end_of(const Snapshot& now, const ActiveTrajectory& path) const;
+  std::string joint_beyond(const Snapshot& now, const ActiveTrajectory& path,
                            const std::vector<Tolerance>& allowed) const;
-  void tell(const Snapshot& now, const JointWayPoint& desired, GoalContext& context);
+  void tell(const Snapshot& now, const ActiveTrajectory& path, GoalContext& context);
 
   Simulation& simulation_;
   const std::string robot_;
   const int interfaces_;
   const std::vector<std::string> names_;
-  const JointWay way_;
+  const JointTrajectory trajectory_;
+  const trajectory_msgs::JointTrajectory message_;
   const std::vector<Tolerance> path_, goal_;
   const double stamp_;
-  double settling_ = 0, start_ = 0, posted_ = 0, timestep_ = 0;  // [s]
+  double settling_ = 0;      // [s]
+  int64_t posted_step_ = 0;  // at or after which it starts
+  int64_t start_step_ = -1;
   Rational rate_ = {0, 1};
   std::vector<Joint> joints_;
-  std::vector<double> from_;
   std::unique_ptr<ControlLease> lease_;
 };
 

@@ -75,9 +75,24 @@ Status joint_goals(const Call& call, Packer& out) {
 
 Status velocity_goal(const Call& call, Packer& out) {
   GLOAM_TRY(const RobotInfo robot, robot_of(call, call.services.simulation().world()));
-  const Command command{step_of(call), SetVelocityGoal{robot.robot, call.arguments.number("vx"),
-                                                       call.arguments.number("vy"),
-                                                       call.arguments.number("yaw_rate")}};
+  const Command command{
+      step_of(call),
+      SetVelocityGoal{robot.robot, call.arguments.number("vx"), call.arguments.number("vy"),
+                      call.arguments.number("yaw_rate"), call.arguments.number("vz")}};
+  return post_by_robot(call, {{robot.name, {command}}}, out);
+}
+
+// Position and orientation of a call; without an orientation, the identity.
+Pose pose_of(const Call& call) {
+  Pose X{vector_of(call.arguments.numbers("position")), {}};
+  if (const auto q = call.arguments.numbers("orientation"); !q.empty())
+    X.q = {q[0], q[1], q[2], q[3]};
+  return X;
+}
+
+Status pose_goal(const Call& call, Packer& out) {
+  GLOAM_TRY(const RobotInfo robot, robot_of(call, call.services.simulation().world()));
+  const Command command{step_of(call), SetPoseGoal{robot.robot, pose_of(call)}};
   return post_by_robot(call, {{robot.name, {command}}}, out);
 }
 
@@ -102,10 +117,7 @@ Status joint_states(const Call& call, Packer& out) {
 Status mocap_pose(const Call& call, Packer& out) {
   GLOAM_TRY(const Body body,
             call.services.simulation().world().find_body(call.arguments.text("body")));
-  SetMocapPose pose{body, {vector_of(call.arguments.numbers("position")), {}}};
-  if (const auto q = call.arguments.numbers("orientation"); !q.empty())
-    pose.X_WB.q = {q[0], q[1], q[2], q[3]};
-  return post_one(call, {step_of(call), pose}, out);
+  return post_one(call, {step_of(call), SetMocapPose{body, pose_of(call)}}, out);
 }
 
 Status wrench(const Call& call, Packer& out) {
@@ -166,8 +178,17 @@ std::vector<Operation> command_operations() {
         {"vx", kNumber, false, "m/s", "forward"},
         {"vy", kNumber, false, "m/s", "left"},
         {"yaw_rate", kNumber, false, "rad/s", "counterclockwise"},
+        {"vz", kNumber, false, "m/s", "up, of a flying robot"},
         kStepArgument},
        velocity_goal},
+      {"pose_goal",
+       "sets the goal pose of the frame that a robot's controller controls, in the world",
+       kAtOnce,
+       {kRobotArgument,
+        {"position", kNumbers, true, "m, (3)", "x y z", 3},
+        {"orientation", kNumbers, false, "(4)", "unit quaternion w x y z; default: 1 0 0 0", 4},
+        kStepArgument},
+       pose_goal},
       {"joint_states",
        "sets positions and velocities of joints",
        kAtOnce,

@@ -12,7 +12,7 @@ namespace {
 std::vector<Operation> make_table() {
   std::vector<Operation> table;
   for (auto* rows : {hello_operations, run_operations, command_operations, claim_operations,
-                     option_operations, world_operations, record_operations}) {
+                     option_operations, world_operations, record_operations, joint_operations}) {
     std::vector<Operation> some = rows();
     table.insert(table.end(), some.begin(), some.end());
   }

@@ -59,6 +59,7 @@ std::vector<Operation> option_operations();
 std::vector<Operation> world_operations();
 std::vector<Operation> record_operations();
 std::vector<Operation> hello_operations();
+std::vector<Operation> joint_operations();
 
 /// All of them, by name.
 std::span<const Operation> all_operations();
