@@ -1,0 +1,1 @@
+"""Gait-conditioned velocity tracking of the quadruped in assets/robots/quadruped."""
