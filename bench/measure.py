@@ -424,6 +424,13 @@ def hfield(quick):
                        f"{two['samples'] / 1e6:.0f} M samples in {two['seconds']:.2f} s wall, from the mesh to the heights; one thread {one['rate'] / 1e6:.1f} M/s")
 
 
+def policy(quick):
+    """networks of policies in the control loop"""
+    data = run_json(BIN / "bench_policy_rate", "--json")
+    yield at_most("a policy of three layers of 512, OpenVINO f32 on one thread: µs", data["median_us"], 50,
+                  f"median of 10,000 runs; 99 % below {data['p99_us']:.0f} µs")
+
+
 def gas(quick):
     """smoke and fire: steps of the solver"""
     data = run_json(BIN / "bench_gas_rate", "--steps", "10" if quick else "60", "--threads", "2", "--json")
@@ -505,7 +512,35 @@ def python(quick):
     yield at_most("µs to the arrays, pose and matrix of a frame of 640x480", cold, 50, f"right after it was rendered, caches cold; again {warm:.1f} µs; median of 30")
 
 
+def inverse_kinematics(quick):
+    """one solution of differential inverse kinematics against Mink: the same tasks and limits"""
+    folder = CACHE / "bench_ik"
+    folder.mkdir(parents=True, exist_ok=True)
+    sys.path.insert(0, str(ROOT / "tests" / "python"))
+    import ik_models  # noqa: PLC0415
+    for name, make, sites, bar in (("arm of 7 joints", ik_models.arm, ["tool"], 5),
+                                   ("humanoid of 29 joints", ik_models.humanoid, ["left_palm", "right_palm", "left_sole", "right_sole"], 2)):
+        pairs = []
+        for _ in range(1 if quick else 5):
+            ours = run_json(BIN / "bench_ik_rate", make(folder), *sites)
+            pairs.append((ours["solve_us"], run_json(peer_python(), ROOT / "bench" / "peers" / "mink_rate.py", make(folder), *sites)["solve_us"]))
+        yield at_least(f"inverse kinematics, {name}: Mink's time / ours", statistics.median(theirs / ours for ours, theirs in pairs), bar,
+                       f"{statistics.median(p[0] for p in pairs):.1f} µs against {statistics.median(p[1] for p in pairs):.0f} µs with the faster of daqp "
+                       f"and quadprog; frames of {len(sites)} sites, a posture, ranges and velocities")
+
+
+def flight(quick):
+    """the quadrotor's controller: a step of 1 m, and hovering in gusts; in simulation time"""
+    data = run_json(ROOT / "gloam", "python", ROOT / "bench" / "flight.py")
+    for name, bar in (("step_forward", 1.5), ("step_up", 1.5)):
+        row = data[name]
+        yield at_most(f"quadrotor, {name.replace('_', ' ')} of 1 m: s from 10 to 90 %", row["rise_s"], bar, f"overshoot {row['overshoot_percent']:.1f} %")
+    for name, bar in (("hover_still", 0.01), ("hover_gusts_8", 0.3), ("hover_gusts_12", 0.5)):
+        row = data[name]
+        yield at_most(f"quadrotor, {name.replace('_', ' ')}: m of error, root mean square over 60 s", row["rms_m"], bar, f"at most {row['max_m']:.3f} m")
+
+
 # With the seconds that each takes on two cores: the first estimate of the time left.
 ALL = {sim_step_rate: 15, sim_beside_cameras: 60, path_tier: 60, equal_error: 600, direct_tier: 90, direct_places: 60, view: 40, fast_tier: 400, truth: 40, load_time: 120, import_time: 60,
-       first_picture: 15, adaptive_sampling: 120, truth_at_few_samples: 900, lidar: 25, environments: 60, hfield: 25, gas: 20,
-       effects: 90, all_effects: 75, log_rate: 60, record_cost: 300, latency: 330, python: 60}
+       first_picture: 15, adaptive_sampling: 120, truth_at_few_samples: 900, lidar: 25, environments: 60, hfield: 25, policy: 3, gas: 20,
+       effects: 90, all_effects: 75, log_rate: 60, record_cost: 300, latency: 330, python: 60, inverse_kinematics: 30, flight: 20}

@@ -5,7 +5,7 @@ import unittest
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
-ORDER = ["base", "trajectory", "ros", "mcap", "geometry", "places", "scene", "world", "instant", "sim", "render", "sensors", "control", "metrics", "topics", "record",
+ORDER = ["base", "trajectory", "ros", "mcap", "geometry", "places", "scene", "world", "instant", "sim", "render", "sensors", "policy", "control", "metrics", "topics", "record",
          "runtime", "report"]
 OUTSIDERS = ["src/web", "src/bridge", "src/studio", "src/python", "apps"]
 OUTSIDERS_MAY = {"src/bridge": {"ros"}, "src/python": {"ros"}}  # messages of a standard, independent of the simulator

@@ -390,7 +390,7 @@ def ci(tally):
     if build(tally, "release", ["gloam_cuda_test", "gloam_gas_cuda_test"]):  # without a card this shows that the card's source compiles
         gtest(tally, "release", "cuda")
         gtest(tally, "release", "gas_cuda")
-    fuzz(tally, 15, ["scene_toml_fuzz", "model_path_fuzz", "model_xml_fuzz"])
+    fuzz(tally, 15, ["scene_toml_fuzz", "robot_entry_fuzz", "model_path_fuzz", "model_xml_fuzz"])
 
 
 def pack(tally):
