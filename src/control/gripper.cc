@@ -132,7 +132,7 @@ std::optional<Range> range_of_joint(const mjModel& model, int joint) {
   return Range{model.jnt_range[2 * joint], model.jnt_range[2 * joint + 1]};
 }
 
-// Of a tendon: its limits, else those of its servo's control.
+// The limits of the tendon, else the control range of its servo.
 std::optional<Range> range_of_tendon(const mjModel& model, int tendon, const DrivenJoint& terms) {
   if (model.tendon_limited[tendon])
     return Range{model.tendon_range[2 * tendon], model.tendon_range[2 * tendon + 1]};

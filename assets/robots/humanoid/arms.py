@@ -8,7 +8,7 @@ from mesh_parts.joints import SIDES, cap, cheeks, end_bolts, housing
 ROLL = (0, 0.038, -0.013831)  # axis of the roll joint in the frame of shoulder_pitch
 ELBOW = (0.015783, 0, -0.080518)  # in the frame of shoulder_yaw
 FOREARM = -0.010  # height of the forearm's axis in the frame of the elbow
-HAND = 0.046  # from the axis of the wrist's pitch to that of its yaw
+HAND = 0.046  # from the wrist's pitch axis to its yaw axis
 
 
 def shoulder_pitch_dark():

@@ -2,7 +2,7 @@
 """Makes the drawn meshes of the humanoid: meshes/*.obj, one file per link and material.
 
 Run it in any folder: python3 make_meshes.py [OUTPUT_FOLDER]. Needs numpy only; the same input gives the same bytes.
-Units: metres. Frames: those of the links in humanoid.xml (x ahead, y left, z up).
+Units: metres. Frames: the links' own in humanoid.xml (x ahead, y left, z up).
 """
 
 import pathlib

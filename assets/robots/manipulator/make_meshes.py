@@ -2,7 +2,7 @@
 """Makes the drawn meshes of the manipulator: meshes/*.obj, one file per link and material.
 
 Run it in any folder: python3 make_meshes.py [OUTPUT_FOLDER]. Needs numpy only; the same input gives the same bytes.
-Units: metres. Frames: those of the links in manipulator.xml with all joints at zero: x along the stretched arm, y along
+Units: metres. Frames: the links' own in manipulator.xml with all joints at zero: x along the stretched arm, y along
 the axes of shoulder, elbow and wrist 1, z up. The gripper's parts are in gripper_parts.py.
 """
 

@@ -28,7 +28,7 @@ struct MotorThermal {
   double heat_capacity = 100;     ///< of the winding [J/K]
   double derate_start = 80;       ///< temperature from which the torque limit falls [°C]
   double cutoff = 100;            ///< temperature at which the torque limit is zero [°C]
-  /// Air temperature [°C]; none = that of the first [[gas]], otherwise 20.
+  /// Air temperature [°C]; none = the temperature of the first [[gas]], otherwise 20.
   std::optional<double> ambient = {};
 };
 

@@ -47,7 +47,7 @@ struct RobotGuess {
 };
 
 /// Proposes settings for an MJCF or URDF from the shape of its kinematic tree at its keyframe.
-/// Errors: a file that is no model or does not compile.
+/// Errors: the file is not a model, or the model does not compile.
 Result<RobotGuess> guess_robot(const std::filesystem::path& file, const FileAccess& access = {});
 
 }  // namespace gloam

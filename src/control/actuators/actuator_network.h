@@ -18,7 +18,7 @@ class ActuatorNetwork {
   virtual size_t outputs() const = 0;  ///< numbers for one joint
   /// The same inputs give the same bits. False: the library reported an error.
   virtual bool evaluate(std::span<const float> inputs, std::span<float> outputs) = 0;
-  /// Of the same weights, for another thread.
+  /// Returns a network with the same weights for another thread.
   virtual std::unique_ptr<ActuatorNetwork> share() const = 0;
 };
 

@@ -18,7 +18,7 @@ double air_temperature(const CompiledWorld& world) {
                                    : double{world.gases.gases[0].temperature} - kCelsius;
 }
 
-/// What clones share.
+/// Constant data, shared by clones.
 struct RobotSetup {
   RobotOptions options;
   std::vector<DriveSetup> drives;

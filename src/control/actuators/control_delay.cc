@@ -29,7 +29,7 @@ class ControlDelay final : public ActuatorModel {
                   drives[line.row].command);
     }
   }
-  // Of a line of another length the newest controls remain.
+  // If the length of a line has changed, its newest controls remain.
   void take_over(const ActuatorModel& before, std::span<const int> old_row) override {
     const auto& old = static_cast<const ControlDelay&>(before);
     for (Line& line : lines_) {

@@ -11,7 +11,7 @@
 
 namespace gloam {
 
-/// What does not change: the actuator, its joint and its options.
+/// The constant part of a drive: the actuator, its joint and its options.
 struct DriveSetup {
   std::string name;  ///< of the joint, without the robot's prefix
   int joint = -1, qpos = -1, dof = -1;
@@ -25,7 +25,7 @@ struct DriveSetup {
 struct Drive {
   const DriveSetup* setup = nullptr;
 
-  // Of the present step, at its beginning.
+  // State at the beginning of the present step.
   double position = 0, velocity = 0;  ///< of the joint [rad, rad/s]
   double command = 0;                 ///< control, within its limits and delayed
   double gear = 1;                    ///< joint torque per unit of actuator force

@@ -121,7 +121,7 @@ class TreeReader {
     }
   }
 
-  // Of the geom's bounding box.
+  // Height of the lowest corner of the geom's bounding box [m].
   double lowest_point(int geom) const {
     const mjtNum *box = m_.geom_aabb + 6 * geom, *up = tree_->data->geom_xmat + 9 * geom + 6;
     double z = tree_->data->geom_xpos[3 * geom + 2];

@@ -25,7 +25,8 @@ struct RobotTree {
   DataPtr data;              ///< at the robot's initial keyframe, kinematics computed
 };
 
-/// Of a World with one robot and nothing else. Of several floating trees, the one with most joints.
+/// Requires a World with one robot and nothing else. If several trees float, returns the one with
+/// the most joints.
 RobotTree robot_tree(const CompiledWorld& world);
 
 /// Axis of a hinge or slide in the base frame.
