@@ -34,10 +34,7 @@ std::vector<JointActuator> joint_actuators(const mjModel& model, const RobotInst
     if (transmission == mjTRN_TENDON) joints = joints_of_tendon(model, target);
     for (const int joint : joints) {
       if (!is_part_of(model, model.jnt_bodyid[joint], robot.root_body)) continue;
-      const char* name = mj_id2name(&model, mjOBJ_JOINT, joint);
-      std::string text = name == nullptr ? "" : name;
-      if (text.starts_with(robot.prefix)) text.erase(0, robot.prefix.size());
-      rows.push_back({actuator, std::move(text)});
+      rows.push_back({actuator, joint_name(model, joint, robot)});
     }
   }
   return rows;

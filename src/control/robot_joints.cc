@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "world/model_names.h"
 #include "world/world_robots.h"
 
 namespace gloam {
@@ -43,6 +44,12 @@ double control_of_position(const DrivenJoint& joint, const mjData& data, double 
   if (joint.takes_target) return std::clamp(joint.gear * target, joint.lowest, joint.highest);
   return control_of_torque(
       joint, kp * (target - data.qpos[joint.qpos]) + kd * (velocity - data.qvel[joint.dof]));
+}
+
+std::string joint_name(const mjModel& model, int joint, const RobotInstance& robot) {
+  std::string name = name_of(model, mjOBJ_JOINT, joint);
+  if (name.starts_with(robot.prefix)) name.erase(0, robot.prefix.size());
+  return name;
 }
 
 bool may_use(const RobotInstance& robot, int actuator) {
@@ -86,9 +93,7 @@ std::vector<DrivenJoint> driven_joints(const mjModel& model, const RobotInstance
     }
     std::optional<DrivenJoint> row = actuator_terms(model, actuator, velocity_servos);
     if (!row) continue;
-    const char* name = mj_id2name(&model, mjOBJ_JOINT, joint);
-    row->name = name == nullptr ? "" : name;
-    if (row->name.starts_with(robot.prefix)) row->name.erase(0, robot.prefix.size());
+    row->name = joint_name(model, joint, robot);
     row->joint = joint;
     row->qpos = model.jnt_qposadr[joint];
     row->dof = model.jnt_dofadr[joint];

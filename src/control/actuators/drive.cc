@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "base/text.h"
+#include "control/robot_joints.h"
 #include "world/model_names.h"
 #include "world/world_robots.h"
 
@@ -22,8 +23,7 @@ std::vector<NamedJoint> joints_of(const mjModel& m, const RobotInstance& robot) 
   std::vector<NamedJoint> joints;
   for (const int id : robot_joints(m, robot)) {
     if (m.jnt_type[id] != mjJNT_HINGE && m.jnt_type[id] != mjJNT_SLIDE) continue;
-    std::string name = name_of(m, mjOBJ_JOINT, id);
-    if (name.starts_with(robot.prefix)) name.erase(0, robot.prefix.size());
+    std::string name = joint_name(m, id, robot);
     if (!name.empty()) joints.push_back({std::move(name), id});
   }
   return joints;

@@ -35,13 +35,6 @@ struct Candidate {
 
 Vector3d vector(const mjtNum* p) { return {p[0], p[1], p[2]}; }
 
-std::string joint_name(const mjModel& model, int joint, const RobotInstance& robot) {
-  const char* name = mj_id2name(&model, mjOBJ_JOINT, joint);
-  std::string text = name == nullptr ? "" : name;
-  if (text.starts_with(robot.prefix)) text.erase(0, robot.prefix.size());
-  return text;
-}
-
 // The largest radius of the body's geoms about the joint's axis.
 double radius_of(const mjModel& model, int body) {
   double radius = 0;
