@@ -22,8 +22,11 @@ Status find_files(const FileFinder& finder, Scene* scene) {
                                              : finder.find_model(&place.file, place.loc));
   for (ObjectOptions& object : scene->objects)
     GLOAM_TRY_STATUS(finder.find(&object.file, object.loc));
-  for (RobotOptions& robot : scene->robots)
+  for (RobotOptions& robot : scene->robots) {
     GLOAM_TRY_STATUS(finder.find_model(&robot.file, robot.loc));
+    for (ActuatorOptions& actuator : robot.actuator)
+      if (actuator.network) GLOAM_TRY_STATUS(finder.find(&actuator.network->file, actuator.loc));
+  }
   for (VisualOptions& visual : scene->visuals)
     GLOAM_TRY_STATUS(finder.find(&visual.file, visual.loc));
   for (HeightFieldOptions& hfield : scene->hfields)
