@@ -7,6 +7,7 @@
 #include <optional>
 #include <utility>
 
+#include "base/log.h"
 #include "control/robot_joints.h"
 
 namespace gloam {
@@ -18,6 +19,17 @@ constexpr const char* kLawNames[] = {"joint_position", "joint_velocity", "joint_
 
 /// A number that a target has, else another.
 double given_or(double value, double other) { return std::isfinite(value) ? value : other; }
+
+struct Gains {
+  double kp, kd;  // [N m/rad], [N m s/rad]
+};
+
+// Torques hold for a period T, so a joint of inertia J is stable up to kd T/J = 2 and 2 kd T/J +
+// kp T²/J = 4. Joints of one robot accelerate each other, hence a quarter of that.
+Gains stable_gains(const DrivenJoint& joint, Gains gains, double period) {
+  const double kd = 0.5 * joint.inertia / period;
+  return {std::min(gains.kp, 0.5 * kd / period), std::min(gains.kd, kd)};
+}
 
 class JointController final : public Controller {
  public:
@@ -104,7 +116,9 @@ class JointController final : public Controller {
       if (joint.takes_velocity && law_ == JointLaw::kVelocity)
         return servo_target(joint, 0, target);
     }
-    return torque_control(joint, data, torque_of(joint, data, q, target));
+    const Gains gains =
+        stable_gains(joint, {given_or(target.kp, kp_), given_or(target.kd, kd_)}, period);
+    return torque_control(joint, data, torque_of(joint, data, q, target, gains));
   }
 
   // Moves the reference by one period. The spring to it gives no more than the actuator can.
@@ -129,14 +143,13 @@ class JointController final : public Controller {
   }
 
   double torque_of(const DrivenJoint& joint, const mjData& data, double q,
-                   const JointTarget& target) const {
-    const double kp = given_or(target.kp, kp_), kd = given_or(target.kd, kd_);
+                   const JointTarget& target, const Gains& gains) const {
     const double v = given_or(target.velocity, 0);
     double torque = 0;
     if (law_ != JointLaw::kEffort || std::isfinite(target.position)) {
-      torque = kp * (q - data.qpos[joint.qpos]) - kd * (data.qvel[joint.dof] - v);
+      torque = gains.kp * (q - data.qpos[joint.qpos]) - gains.kd * (data.qvel[joint.dof] - v);
     } else if (std::isfinite(target.velocity)) {
-      torque = -kd * (data.qvel[joint.dof] - v);
+      torque = -gains.kd * (data.qvel[joint.dof] - v);
     }
     if (std::isfinite(target.effort)) torque += target.effort;
     return torque;
@@ -154,6 +167,26 @@ class JointController final : public Controller {
   std::vector<double> reference_;  // q* where there is no target [rad or m], by driven joint
   bool hold_initial_;
 };
+
+// Lower gains than the user set are reported, once per controller.
+void report_lowered_gains(const std::vector<DrivenJoint>& joints, const RobotInstance& robot,
+                          double period) {
+  const ControllerOptions& options = robot.options.controller;
+  const DrivenJoint* first = nullptr;
+  int count = 0;
+  for (const DrivenJoint& joint : joints) {
+    const Gains gains = stable_gains(joint, {options.kp, options.kd}, period);
+    if (joint.takes_target || (gains.kp == options.kp && gains.kd == options.kd)) continue;
+    if (count++ == 0) first = &joint;
+  }
+  if (first == nullptr) return;
+  const Gains gains = stable_gains(*first, {options.kp, options.kd}, period);
+  log_warning(
+      "controller '{}' of robot '{}': {} of {} joints are too light for kp = {:g} and kd = {:g} at "
+      "{:g} Hz; '{}' gets {:.2g} and {:.2g}",
+      options.type, robot.name, count, joints.size(), options.kp, options.kd, 1 / period,
+      first->name, gains.kp, gains.kd);
+}
 
 Result<std::unique_ptr<Controller>> make_joint_controller(JointLaw law, const CompiledWorld& world,
                                                           const RobotInstance& robot) {
@@ -185,6 +218,7 @@ Result<std::unique_ptr<Controller>> make_joint_controller(JointLaw law, const Co
   if (!(options.kp >= 0 && options.kd >= 0 && std::isfinite(options.kp + options.kd))) {
     return Error{ErrorKind::kInput, "'kp' and 'kd' must be finite and not negative", options.loc};
   }
+  report_lowered_gains(joints, robot, 1 / options.rate.value());
   return std::unique_ptr<Controller>(
       std::make_unique<JointController>(law, std::move(joints), options));
 }

@@ -97,6 +97,7 @@ std::vector<DrivenJoint> driven_joints(const mjModel& model, const RobotInstance
     row->joint = joint;
     row->qpos = model.jnt_qposadr[joint];
     row->dof = model.jnt_dofadr[joint];
+    row->inertia = 1 / model.dof_invweight0[row->dof];
     driven.push_back(std::move(*row));
   }
   return driven;

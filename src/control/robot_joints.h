@@ -19,8 +19,9 @@ struct DrivenJoint {
   int actuator = -1;
   int ctrl = -1;  ///< index of its control
   int qpos = -1, dof = -1;
-  double gear = 1;              ///< joint torque per unit of actuator force
-  bool takes_target = false;    ///< position servo: its control is the joint's angle times the gear
+  double inertia = 0;         ///< that one torque at the joint accelerates, in qpos0 [kg m² or kg]
+  double gear = 1;            ///< joint torque per unit of actuator force
+  bool takes_target = false;  ///< position servo: its control is the joint's angle times the gear
   bool takes_velocity = false;  ///< velocity servo: likewise the joint's velocity
   double gain = 1;              ///< actuator force per unit of control
   /// Of a servo's force, beside the control's: constant, per length, per velocity

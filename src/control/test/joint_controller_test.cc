@@ -43,6 +43,27 @@ TEST(JointController, GainsOfACommandReplaceTheOptions) {
   EXPECT_DOUBLE_EQ(sim->latest().control(Actuator{0}), (4 * 2 + 1) / 2.0);
 }
 
+// A finger of grams at the default gains: kd alone would turn it around within a step.
+TEST(JointController, LightJointsStayStableAtGainsOfHeavyOnes) {
+  constexpr const char* kFinger =
+      R"(<mujoco><compiler angle="radian"/><option timestep="0.002" gravity="0 0 0"/><worldbody><body name="hand">
+    <geom size=".01"/>
+    <body><joint name="1" axis="0 1 0"/><inertial pos=".02 0 0" mass=".005" diaginertia="1e-7 1e-6 1e-6"/>
+      <body pos=".04 0 0"><joint name="2" axis="0 1 0"/><inertial pos=".02 0 0" mass=".005" diaginertia="1e-7 1e-6 1e-6"/>
+        <body pos=".04 0 0"><joint name="3" axis="0 1 0"/><inertial pos=".02 0 0" mass=".005" diaginertia="1e-7 1e-6 1e-6"/>
+    </body></body></body></body></worldbody>
+    <actuator><motor joint="1"/><motor joint="2"/><motor joint="3"/></actuator></mujoco>)";
+  for (const int rate : {500, 100}) {
+    auto sim = run_arm(arm_world(kFinger, options("joint_position", 40, 1, {rate, 1})));
+    ASSERT_TRUE(sim->post({.what = SetJointCommand{kArmRobot, {}, {0.5, -0.3, 0.2}}}).ok());
+    ASSERT_TRUE(sim->step(2000).ok());
+    const Snapshot now = sim->latest();
+    EXPECT_NEAR(now[Joint{0}].position(), 0.5, 0.01) << rate;
+    EXPECT_NEAR(now[Joint{1}].position(), -0.3, 0.01) << rate;
+    EXPECT_NEAR(now[Joint{2}].position(), 0.2, 0.01) << rate;
+  }
+}
+
 TEST(JointController, EffortWithoutTargetsIsZero) {
   auto sim = run_arm(arm_world(kPendulums, options("joint_effort", 40, 1)));
   ASSERT_TRUE(sim->step(1).ok());
