@@ -182,9 +182,9 @@ void report_lowered_gains(const std::vector<DrivenJoint>& joints, const RobotIns
   if (first == nullptr) return;
   const Gains gains = stable_gains(*first, {options.kp, options.kd}, period);
   log_warning(
-      "controller '{}' of robot '{}': {} of {} joints are too light for kp = {:g} and kd = {:g} at "
-      "{:g} Hz; '{}' gets {:.2g} and {:.2g}",
-      options.type, robot.name, count, joints.size(), options.kp, options.kd, 1 / period,
+      "controller '{}' of robot '{}': kp = {:g} and kd = {:g} at {:g} Hz are too stiff for light "
+      "joints ({} of {}); '{}' gets {:.2g} and {:.2g}",
+      options.type, robot.name, options.kp, options.kd, 1 / period, count, joints.size(),
       first->name, gains.kp, gains.kd);
 }
 
