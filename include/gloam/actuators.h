@@ -11,6 +11,7 @@ struct DriveOutput {
   double force = 0;        ///< applied in the last step, in the actuator's space; NaN = none yet
   double current = 0;      ///< of the winding [A]
   double temperature = 0;  ///< of the winding [°C]
+  double speed = 0;        ///< of the motor, in the last step [rad/s]
 };
 
 /// A robot with actuator models, after the last step. NaN = not modelled.
@@ -22,7 +23,7 @@ struct ActuatorOutputs {
   double capacity = 0;              ///< of the battery [A h]
   double power = 0;                 ///< electrical, of all actuators [W]
   double energy = 0;                ///< electrical, since the reset [J]
-  std::vector<DriveOutput> drives;  ///< in the order of the robot's joints
+  std::vector<DriveOutput> drives;  ///< of joints in the model's order, then of propellers
 };
 
 }  // namespace gloam

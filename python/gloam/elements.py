@@ -352,8 +352,17 @@ class Robot(Element):
     def motor_temperatures(self) -> Doubles:
         """Temperatures of the windings of its actuators [°C], in the order of `controls`; NaN where an actuator has no
         thermal model, (n,). Error: it has no [[robot.actuator]]."""
-        temperatures = self._readings()["temperatures"]
-        return read_only(np.array([temperatures.get(a.id, np.nan) for a in self._info["actuators"]]))
+        return self._of_motors("temperatures")
+
+    @property
+    def motor_speeds(self) -> Doubles:
+        """Speeds of the motors of its actuators in the last step [rad/s], propellers' included, in the order of `controls`;
+        NaN where an actuator has no model, (n,). Error: it has no [[robot.actuator]]."""
+        return self._of_motors("speeds")
+
+    def _of_motors(self, quantity: str) -> Doubles:
+        values = self._readings()[quantity]
+        return read_only(np.array([values.get(a.id, np.nan) for a in self._info["actuators"]]))
 
     def _readings(self) -> dict[str, Any]:
         readings = self._sim._core.actuator_readings(self._now())

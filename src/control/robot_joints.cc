@@ -32,6 +32,11 @@ bool is_velocity_servo(const mjModel& model, int actuator) {
          model.actuator_biasprm[mjNBIAS * actuator + 2] == -kv;
 }
 
+std::string without_prefix(std::string name, const RobotInstance& robot) {
+  if (name.starts_with(robot.prefix)) name.erase(0, robot.prefix.size());
+  return name;
+}
+
 }  // namespace
 
 double control_of_torque(const DrivenJoint& motor, double torque) {
@@ -47,9 +52,11 @@ double control_of_position(const DrivenJoint& joint, const mjData& data, double 
 }
 
 std::string joint_name(const mjModel& model, int joint, const RobotInstance& robot) {
-  std::string name = name_of(model, mjOBJ_JOINT, joint);
-  if (name.starts_with(robot.prefix)) name.erase(0, robot.prefix.size());
-  return name;
+  return without_prefix(name_of(model, mjOBJ_JOINT, joint), robot);
+}
+
+std::string actuator_name(const mjModel& model, int actuator, const RobotInstance& robot) {
+  return without_prefix(name_of(model, mjOBJ_ACTUATOR, actuator), robot);
 }
 
 bool may_use(const RobotInstance& robot, int actuator) {

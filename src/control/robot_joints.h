@@ -32,8 +32,9 @@ struct DrivenJoint {
 
 enum class VelocityServos : uint8_t { kLeaveOut, kInclude };
 
-/// Name of a joint without its robot's prefix; "" when it has none.
+/// Name of a joint or actuator without its robot's prefix; "" when it has none.
 std::string joint_name(const mjModel& model, int joint, const RobotInstance& robot);
+std::string actuator_name(const mjModel& model, int actuator, const RobotInstance& robot);
 
 /// Whether the robot's controller may use the actuator.
 bool may_use(const RobotInstance& robot, int actuator);

@@ -212,15 +212,18 @@ nb::object actuator_readings(Run& run, Robot robot) {
   const Snapshot now = run.latest();
   const ActuatorOutputs* outputs = now.actuators(robot);
   if (outputs == nullptr) return nb::none();
-  nb::dict made, temperatures;
-  for (const DriveOutput& drive : outputs->drives)
+  nb::dict made, temperatures, speeds;
+  for (const DriveOutput& drive : outputs->drives) {
     temperatures[nb::int_(drive.actuator)] = drive.temperature;
+    speeds[nb::int_(drive.actuator)] = drive.speed;
+  }
   made["voltage"] = outputs->voltage;
   made["current"] = outputs->current;
   made["charge"] = outputs->charge;
   made["power"] = outputs->power;
   made["energy"] = outputs->energy;
   made["temperatures"] = temperatures;
+  made["speeds"] = speeds;
   return made;
 }
 

@@ -8,6 +8,7 @@
 #include "topics/model_frames.h"
 #include "topics/ros_values.h"
 #include "topics/topic_table.h"
+#include "world/model_names.h"
 #include "world/world.h"
 
 namespace gloam {
@@ -53,9 +54,14 @@ InstantEncoder actuator_states(int robot, std::string prefix) {
     message.header = ros_header(at.snapshot().time(), topic.frame_id);
     if (const ActuatorOutputs* o = at.snapshot().actuators(Robot{robot}); o != nullptr) {
       for (const DriveOutput& drive : o->drives) {
-        const double gear = m.actuator_gear[6 * m.actuator_outadr[drive.actuator]];
-        message.name.push_back(joint_label(m, m.actuator_trnid[2 * drive.actuator], prefix));
-        message.torque.push_back(std::isfinite(drive.force) ? gear * drive.force : 0);
+        const mjtNum* gear = m.actuator_gear + 6 * m.actuator_outadr[drive.actuator];
+        const bool is_propeller = m.actuator_trntype[drive.actuator] == mjTRN_SITE;
+        message.name.push_back(is_propeller
+                                   ? local_name(name_of(m, mjOBJ_ACTUATOR, drive.actuator), prefix)
+                                   : joint_label(m, m.actuator_trnid[2 * drive.actuator], prefix));
+        const double per_force = is_propeller ? mju_norm3(gear) : gear[0];
+        message.torque.push_back(std::isfinite(drive.force) ? per_force * drive.force : 0);
+        message.speed.push_back(drive.speed);
         message.current.push_back(drive.current);
         message.temperature.push_back(drive.temperature);
       }

@@ -1,6 +1,7 @@
 #pragma once
 // Actuators between the controls of a robot and MuJoCo ([robot.actuators], [[robot.actuator]]):
-// motor, battery, gear and network models. Part of gloam/scene.h. Equations: docs/actuators.md.
+// motor, propeller, battery, gear and network models. Part of gloam/scene.h. Equations:
+// docs/actuators.md.
 
 #include <array>
 #include <filesystem>
@@ -49,11 +50,35 @@ struct ActuatorNetworkOptions {
   double kd = 0;
 };
 
-/// [[robot.actuator]]: the actuators of some joints of a robot. If several tables match a joint,
-/// the last applies.
+/// propeller of a [[robot.actuator]]: a propeller with fixed pitch on the shaft of the motor. The
+/// control of its actuator commands the thrust that the propeller has at rest; a speed controller
+/// turns the motor at the speed of that thrust. Advance ratio: J = v / (n D), with the speed v
+/// through the air along the thrust and n turns per second (McCormick 1995, "Aerodynamics,
+/// Aeronautics, and Flight Mechanics", chapter 6).
+struct PropellerOptions {
+  double diameter = 0;            ///< D [m]
+  double thrust_coefficient = 0;  ///< C_T at J = 0: thrust = C_T ρ n² D⁴
+  /// C_P at J = 0: power of the shaft = C_P ρ n³ D⁵; none = from the reaction torque in the
+  /// actuator's gear.
+  std::optional<double> power_coefficient = {};
+  /// J at which the thrust, and the torque, is zero, both linear in J; none = constant.
+  std::optional<double> zero_thrust_advance = {}, zero_torque_advance = {};
+  double inertia = 0;  ///< of propeller and rotor about the shaft [kg m²]
+  double response_time =
+      0.02;                    ///< time constant of the speed while voltage and current suffice [s]
+  double no_load_current = 0;  ///< that friction and iron losses of the motor take [A]
+  double current_limit = 0;    ///< of the speed controller [A]; 0 = not limited
+  double voltage = 0;          ///< of the supply of a robot without battery [V]
+  double air_density = 1.225;  ///< ρ [kg/m³]
+};
+
+/// [[robot.actuator]]: the actuators of some joints, or the propellers, of a robot. If several
+/// tables match a joint or propeller, the last applies.
 struct ActuatorOptions {
   /// Names of joints in the robot's own model: a regular expression (RE2) that matches whole names.
   std::string joints = ".*";
+  /// Instead: names of actuators that push at sites, with `propeller`.
+  std::string actuators = {};
   double gear_ratio = 1;     ///< motor speed per joint speed
   double stall_torque = 0;   ///< DC motor: torque at rest, at the motor [N m]; 0 = not limited
   double no_load_speed = 0;  ///< DC motor: speed at which no torque is left, at the motor [rad/s]
@@ -67,6 +92,7 @@ struct ActuatorOptions {
   std::optional<ActuatorFriction> friction = {};
   std::optional<MotorThermal> thermal = {};
   std::optional<ActuatorNetworkOptions> network = {};
+  std::optional<PropellerOptions> propeller = {};
   SourceLoc loc = {};
 };
 

@@ -25,14 +25,14 @@ struct FlightOptions {
   std::vector<Waypoint> waypoints = {};  ///< in order; empty = hover where the run starts
   double max_speed = 5;                  ///< [m/s]
   double max_climb = 2;                  ///< vertical speed [m/s]
-  double max_acceleration = 4;           ///< of the setpoint [m/s²]
+  double max_acceleration = 2.5;         ///< of the setpoint [m/s²]
   double max_tilt = 0.7;                 ///< [rad], below pi/2
   double max_yaw_rate = 1.5;             ///< [rad/s]
   double tolerance = 0.2;                ///< distance at which a waypoint is reached [m]
   double position_gain = 1.5;            ///< speed per position error [1/s]
-  Vec3 velocity_gains = {4, 1.5, 0.1};   ///< PID: acceleration per velocity error [1/s, 1/s², 1]
-  double attitude_gain = 8;              ///< angular velocity per attitude error [1/s]
-  Vec3 rate_gains = {20, 20, 0};  ///< PID: angular acceleration per rate error [1/s, 1/s², 1]
+  Vec3 velocity_gains = {5, 1, 0};       ///< PID: acceleration per velocity error [1/s, 1/s², 1]
+  double attitude_gain = 10;             ///< angular velocity per attitude error [1/s]
+  Vec3 rate_gains = {25, 20, 0};  ///< PID: angular acceleration per rate error [1/s, 1/s², 1]
 };
 
 /// [robot.controller.drive]: the base of the controller "diff_drive".

@@ -59,6 +59,9 @@ Result<int64_t> whole_steps(double seconds, Rational timestep, const std::string
 /// The value at x of rows (x, y) with rising x; outside of them that of the nearest row.
 double interpolate(std::span<const std::array<double, 2>> rows, double x);
 
+/// Voltage of the battery for which the values of motors hold [V].
+double nominal_voltage(const BatteryOptions& battery);
+
 // model_list.cc: in the order in which they act.
 Result<std::vector<std::unique_ptr<ActuatorModel>>> make_actuator_models(const ActuatorParts&);
 
@@ -66,6 +69,7 @@ Result<std::unique_ptr<ActuatorModel>> make_control_delay(const ActuatorParts& p
 Result<std::unique_ptr<ActuatorModel>> make_drive_law(const ActuatorParts& parts);
 Result<std::unique_ptr<ActuatorModel>> make_torque_network(const ActuatorParts& parts);
 Result<std::unique_ptr<ActuatorModel>> make_torque_limits(const ActuatorParts& parts);
+Result<std::unique_ptr<ActuatorModel>> make_propellers(const ActuatorParts& parts);
 Result<std::unique_ptr<ActuatorModel>> make_electric_power(const ActuatorParts& parts);
 Result<std::unique_ptr<ActuatorModel>> make_winding_heat(const ActuatorParts& parts);
 Result<std::unique_ptr<ActuatorModel>> make_battery(const ActuatorParts& parts);

@@ -18,6 +18,17 @@ double air_temperature(const CompiledWorld& world) {
                                    : double{world.gases.gases[0].temperature} - kCelsius;
 }
 
+// Speed of a propeller through the air along its thrust [m/s]. After a step mjData has the
+// velocities of its beginning, so that a propeller meets the air one step late.
+double inflow_of(const DriveSetup& propeller, const mjModel& model, const mjData& data) {
+  mjtNum twist[6], axis[3];  // world axes: angular, linear
+  mj_objectVelocity(&model, &data, mjOBJ_SITE, propeller.site, twist, 0);
+  mju_mulMatVec3(axis, data.site_xmat + 9 * propeller.site,
+                 model.actuator_gear + 6 * propeller.output);
+  mju_normalize3(axis);
+  return mju_dot3(twist + 3, axis) - mju_dot3(model.opt.wind, axis);
+}
+
 /// Constant data, shared by clones.
 struct RobotSetup {
   RobotOptions options;
@@ -88,10 +99,17 @@ class RobotActuators final : public ActuatorLayer {
     return true;
   }
 
+  void observe(const mjModel& model, const mjData& data) override {
+    for (Drive& drive : drives_)
+      if (drive.is_propeller()) drive.inflow = inflow_of(*drive.setup, model, data);
+  }
+
   Error error() const override { return error_; }
 
   uint64_t hash(uint64_t before) const override {
     for (const auto& one : models_) before = one->hash(before);
+    for (const Drive& drive : drives_)
+      if (drive.is_propeller()) before = hash_bytes(&drive.inflow, sizeof(drive.inflow), before);
     return before;
   }
 
@@ -103,7 +121,7 @@ class RobotActuators final : public ActuatorLayer {
       const Drive& drive = drives_[i];
       const bool has_current = drive.options().torque_constant > 0;
       out->drives[i] = {drive.setup->actuator, drive.force, has_current ? drive.current : kNaN,
-                        drive.temperature};
+                        drive.temperature, drive.motor_speed()};
     }
     for (const auto& one : models_) one->publish(out);
   }
@@ -116,10 +134,13 @@ class RobotActuators final : public ActuatorLayer {
   void read(const mjModel& model, const mjData& data) {
     for (Drive& drive : drives_) {
       const DriveSetup& setup = *drive.setup;
-      drive.position = data.qpos[setup.qpos];
-      drive.velocity = data.qvel[setup.dof];
+      const mjtNum* gear = model.actuator_gear + 6 * setup.output;
       drive.command = data.ctrl[setup.ctrl];
-      drive.gear = model.actuator_gear[6 * setup.output];
+      drive.gear = drive.is_propeller() ? mju_norm3(gear) : gear[0];
+      if (!drive.is_propeller()) {
+        drive.position = data.qpos[setup.qpos];
+        drive.velocity = data.qvel[setup.dof];
+      }
       const ActuatorLaw law = actuator_law(model, data, setup.actuator);
       drive.gain = law.gain;
       drive.bias = law.bias;

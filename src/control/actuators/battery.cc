@@ -13,17 +13,20 @@ namespace {
 
 constexpr double kSecondsPerHour = 3600;
 
+double open_voltage(const BatteryOptions& options, double charge) {
+  return options.curve.empty() ? options.voltage : interpolate(options.curve, charge);
+}
+
 class Battery final : public ActuatorModel {
  public:
-  explicit Battery(const BatteryOptions& options) : options_(options) {
-    nominal_ = options_.nominal_voltage.value_or(open_voltage(options_.charge));
-  }
+  explicit Battery(const BatteryOptions& options)
+      : options_(options), nominal_(nominal_voltage(options)) {}
 
   std::string_view kind() const override { return "battery"; }
   void reset(std::span<Drive> drives) override {
     charge_ = options_.charge;
     current_ = 0;
-    voltage_ = charge_ > 0 ? open_voltage(charge_) : 0;
+    voltage_ = charge_ > 0 ? open_voltage(options_, charge_) : 0;
     supply(drives);
   }
   void take_over(const ActuatorModel& before, std::span<const int>) override {
@@ -34,7 +37,7 @@ class Battery final : public ActuatorModel {
   }
   bool apply(ActuatorStep& step) override {
     if (charge_ > 0 || step.power < 0) {
-      const double open = open_voltage(charge_), r = options_.internal_resistance;
+      const double open = open_voltage(options_, charge_), r = options_.internal_resistance;
       const double root = std::max(0.0, open * open - 4 * r * step.power);
       // The smaller solution, in a form without cancellation.
       current_ = r > 0 && root == 0 ? open / (2 * r) : 2 * step.power / (open + std::sqrt(root));
@@ -60,19 +63,20 @@ class Battery final : public ActuatorModel {
   std::unique_ptr<ActuatorModel> clone() const override { return std::make_unique<Battery>(*this); }
 
  private:
-  double open_voltage(double charge) const {
-    return options_.curve.empty() ? options_.voltage : interpolate(options_.curve, charge);
-  }
   void supply(std::span<Drive> drives) const {
     for (Drive& drive : drives) drive.supply = voltage_ / nominal_;
   }
 
   BatteryOptions options_;
-  double nominal_ = 0;                             // [V]
+  double nominal_;                                 // [V]
   double charge_ = 0, current_ = 0, voltage_ = 0;  // 0 … 1, [A], [V]
 };
 
 }  // namespace
+
+double nominal_voltage(const BatteryOptions& battery) {
+  return battery.nominal_voltage.value_or(open_voltage(battery, battery.charge));
+}
 
 Result<std::unique_ptr<ActuatorModel>> make_battery(const ActuatorParts& parts) {
   if (!parts.robot.actuators || !parts.robot.actuators->battery)

@@ -74,10 +74,11 @@ Result<std::unique_ptr<ActuatorModel>> make_control_delay(const ActuatorParts& p
   for (size_t row = 0; row < parts.drives.size(); ++row) {
     const ActuatorOptions& o = parts.drives[row].options;
     if (o.delay == 0) continue;
-    GLOAM_TRY(const int64_t steps, whole_steps(o.delay, parts.timestep,
-                                               fmt::format("'delay' of actuator '{}' of robot '{}'",
-                                                           o.joints, parts.robot.name),
-                                               o.loc));
+    GLOAM_TRY(const int64_t steps,
+              whole_steps(o.delay, parts.timestep,
+                          fmt::format("'delay' of actuator '{}' of robot '{}'",
+                                      parts.drives[row].name, parts.robot.name),
+                          o.loc));
     lines.push_back({row, numbers, static_cast<size_t>(steps)});
     numbers += static_cast<size_t>(steps);
   }

@@ -22,7 +22,7 @@ class ElectricPower final : public ActuatorModel {
     double power = 0;
     for (Drive& drive : step.drives) {
       const ActuatorOptions& o = drive.options();
-      const double torque = drive.torque / o.gear_ratio;
+      const double torque = drive.motor_torque();
       drive.current = o.torque_constant > 0 ? torque / o.torque_constant : 0;
       drive.loss = drive.current * drive.current * o.winding_resistance;
       power += torque * drive.motor_speed() + drive.loss;

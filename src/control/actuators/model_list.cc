@@ -13,9 +13,9 @@ Result<std::vector<std::unique_ptr<ActuatorModel>>> make_actuator_models(
   // A new model is a line here. Controls become torques of the motor, which become torques at the
   // joint; battery and winding follow from the torque of the motor.
   static constexpr ActuatorModelMaker kMakers[] = {
-      make_control_delay, make_drive_law,      make_torque_network,
-      make_torque_limits, make_electric_power, make_winding_heat,
-      make_battery,       make_backlash,       make_gear_friction,
+      make_control_delay, make_drive_law,      make_torque_network, make_torque_limits,
+      make_propellers,    make_electric_power, make_winding_heat,   make_battery,
+      make_backlash,      make_gear_friction,
   };
   std::vector<std::unique_ptr<ActuatorModel>> models;
   for (const ActuatorModelMaker make : kMakers) {

@@ -53,6 +53,7 @@ class TorqueLimits final : public ActuatorModel {
   void take_over(const ActuatorModel&, std::span<const int>) override {}
   bool apply(ActuatorStep& step) override {
     for (Drive& drive : step.drives) {
+      if (drive.is_propeller()) continue;  // its speed controller has limits of its own
       const TorqueRange range = range_of(drive);
       const double ratio = drive.options().gear_ratio;
       drive.torque = std::clamp(drive.torque, ratio * range.low, ratio * range.high);

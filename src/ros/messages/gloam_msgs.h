@@ -52,13 +52,14 @@ struct Gas {
 /// The actuator models of a robot at an instant: docs/actuators.md. NaN = not modelled.
 struct ActuatorStates {
   std_msgs::Header header;
-  std::vector<std::string> name;    ///< of the joints, without the robot's name
-  std::vector<double> torque;       ///< applied to the joint [N m]
+  std::vector<std::string> name;    ///< of joints and of propellers' actuators, without the robot's
+  std::vector<double> torque;       ///< applied to the joint [N m]; of a propeller, its thrust [N]
   std::vector<double> current;      ///< of the winding [A]
   std::vector<double> temperature;  ///< of the winding [degrees Celsius]
+  std::vector<double> speed;        ///< of the motor [rad/s]
   double power = 0;                 ///< electrical, of all actuators [W]
   double energy = 0;                ///< electrical, since the beginning [J]
-  GLOAM_MESSAGE(ActuatorStates, header, name, torque, current, temperature, power, energy)
+  GLOAM_MESSAGE(ActuatorStates, header, name, torque, current, temperature, speed, power, energy)
 };
 
 /// Numbers of a probe at an instant, world axes: docs/sensors.md.

@@ -47,8 +47,28 @@ void visit_fields(Visitor& v, ActuatorNetworkOptions& o) {
 }
 
 template <class Visitor>
+void visit_fields(Visitor& v, PropellerOptions& o) {
+  const FieldRule coefficient{.min = 0, .max = 10, .open = true};
+  v("diameter", o.diameter,
+    FieldRule{.unit = "m", .min = 0, .max = 100, .open = true, .required = true});
+  FieldRule thrust = coefficient;
+  thrust.required = true;
+  v("thrust_coefficient", o.thrust_coefficient, thrust);
+  v("power_coefficient", o.power_coefficient, coefficient);
+  v("zero_thrust_advance", o.zero_thrust_advance, coefficient);
+  v("zero_torque_advance", o.zero_torque_advance, coefficient);
+  v("inertia", o.inertia, FieldRule{.unit = "kg m2", .min = 0, .max = 1e6});
+  v("response_time", o.response_time, FieldRule{.unit = "s", .min = 0, .max = 100, .open = true});
+  v("no_load_current", o.no_load_current, FieldRule{.unit = "A", .min = 0, .max = 1e6});
+  v("current_limit", o.current_limit, FieldRule{.unit = "A", .min = 0, .max = 1e6});
+  v("voltage", o.voltage, FieldRule{.unit = "V", .min = 0, .max = 1e4});
+  v("air_density", o.air_density, FieldRule{.unit = "kg/m3", .min = 0, .max = 2e3, .open = true});
+}
+
+template <class Visitor>
 void visit_fields(Visitor& v, ActuatorOptions& o) {
-  v("joints", o.joints, FieldRule{.required = true});
+  v("actuators", o.actuators, FieldRule{});  // first: joints depends on it
+  v("joints", o.joints, FieldRule{.required = o.actuators.empty(), .unless = "actuators"});
   v("gear_ratio", o.gear_ratio, FieldRule{.min = 0, .max = 1e6, .open = true});
   v("stall_torque", o.stall_torque, torque_rule());
   v("no_load_speed", o.no_load_speed, FieldRule{.unit = "rad/s", .min = 0, .max = 1e6});
@@ -61,6 +81,7 @@ void visit_fields(Visitor& v, ActuatorOptions& o) {
   v("friction", o.friction, FieldRule{});
   v("thermal", o.thermal, FieldRule{});
   v("network", o.network, FieldRule{});
+  v("propeller", o.propeller, FieldRule{});
 }
 
 template <class Visitor>

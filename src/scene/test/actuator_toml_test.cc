@@ -52,6 +52,24 @@ network = { file = "net.onnx", position_scale = -1, kp = 20, kd = 0.5 }
   EXPECT_EQ(robot.actuator[1].network->kp, 20);
 }
 
+TEST(ActuatorToml, ReadsPropellers) {
+  Scene scene;
+  ASSERT_EQ(actuator_error(R"(
+[[robot.actuator]]
+actuators = "thrust_.*"
+torque_constant = 0.0125
+winding_resistance = 0.07
+propeller = { diameter = 0.26, thrust_coefficient = 0.12, inertia = 8e-5, voltage = 15, zero_thrust_advance = 0.6 }
+)",
+                           &scene),
+            "");
+  const ActuatorOptions& o = scene.robots[0].actuator.at(0);
+  EXPECT_EQ(o.actuators, "thrust_.*");
+  EXPECT_EQ(o.propeller->thrust_coefficient, 0.12);
+  EXPECT_EQ(o.propeller->zero_thrust_advance, 0.6);
+  EXPECT_FALSE(o.propeller->power_coefficient);
+}
+
 TEST(ActuatorToml, ErrorsNameTheKeyAndTheRemedy) {
   const struct {
     const char *text, *error;
@@ -78,6 +96,31 @@ TEST(ActuatorToml, ErrorsNameTheKeyAndTheRemedy) {
       {"[robot.actuators.battery]\ncurve = [[0, 20], [0.9, 24]]\n"
        "[[robot.actuator]]\njoints = \".*\"\n",
        "not at 1"},
+      {"[[robot.actuator]]\nactuators = \"t\"\n", "'actuators' alone"},
+      {"[[robot.actuator]]\njoints = \"t\"\n"
+       "propeller = { diameter = 0.2, thrust_coefficient = 0.1 }\n",
+       "'propeller' alone"},
+      {"[[robot.actuator]]\nactuators = \"t\"\npropeller = { diameter = 0.2 }\n",
+       "'thrust_coefficient' is missing"},
+      {"[[robot.actuator]]\nactuators = \"(\"\n"
+       "propeller = { diameter = 0.2, thrust_coefficient = 0.1 }\n",
+       "not a regular expression"},
+      {"[[robot.actuator]]\nactuators = \"t\"\nbacklash = 0.1\n"
+       "propeller = { diameter = 0.2, thrust_coefficient = 0.1 }\n",
+       "'backlash', which is for joints"},
+      {"[[robot.actuator]]\nactuators = \"t\"\n"
+       "propeller = { diameter = 0.2, thrust_coefficient = 0.1, zero_torque_advance = 0.7 }\n",
+       "not above 'zero_thrust_advance'"},
+      {"[[robot.actuator]]\nactuators = \"t\"\ntorque_constant = 0.01\nwinding_resistance = 0.1\n"
+       "propeller = { diameter = 0.2, thrust_coefficient = 0.1, inertia = 1e-5 }\n",
+       "no 'propeller.voltage'"},
+      {"[[robot.actuator]]\nactuators = \"t\"\n"
+       "propeller = { diameter = 0.2, thrust_coefficient = 0.1, current_limit = 3 }\n",
+       "9.549 / Kv"},
+      {"[robot.actuators.battery]\nvoltage = 12\n"
+       "[[robot.actuator]]\nactuators = \"t\"\n"
+       "propeller = { diameter = 0.2, thrust_coefficient = 0.1, voltage = 12 }\n",
+       "beside a battery"},
   };
   for (const auto& one : cases) {
     Scene scene;

@@ -56,12 +56,68 @@ Status validate_thermal(const ActuatorOptions& o, const std::string& where) {
   return {};
 }
 
-Status validate_one(const ActuatorOptions& o, const std::string& robot) {
-  const std::string where = fmt::format("actuator '{}' of robot '{}'", o.joints, robot);
-  const RE2 pattern(o.joints, RE2::Quiet);
+// A propeller has neither the joint nor the torques that these keys describe.
+const char* key_of_joints(const ActuatorOptions& o) {
+  const ActuatorOptions none;
+  if (o.joints != none.joints) return "joints";
+  if (o.gear_ratio != none.gear_ratio) return "gear_ratio";
+  if (o.stall_torque > 0 || o.no_load_speed > 0) return "stall_torque";
+  if (!o.curve.empty()) return "curve";
+  if (o.torque_limit > 0) return "torque_limit";
+  if (o.backlash > 0) return "backlash";
+  if (o.friction) return "friction";
+  if (o.thermal) return "thermal";
+  return o.network ? "network" : nullptr;
+}
+
+Status validate_motor(const ActuatorOptions& o, bool has_battery, const std::string& where) {
+  const PropellerOptions& p = *o.propeller;
+  if (has_battery && p.voltage > 0)
+    return error_at(o.loc, fmt::format("the propeller of {} has 'voltage' beside a battery", where),
+                    "remove 'voltage': the battery supplies the motor");
+  if (o.torque_constant == 0) {
+    if (p.no_load_current > 0 || p.current_limit > 0 || p.voltage > 0)
+      return error_at(o.loc, fmt::format("the motor of {} has no 'torque_constant'", where),
+                      "it is 9.549 / Kv, with Kv in rpm/V");
+    return {};
+  }
+  const char* const missing = o.winding_resistance == 0        ? "winding_resistance"
+                              : p.inertia == 0                 ? "propeller.inertia"
+                              : !has_battery && p.voltage == 0 ? "propeller.voltage"
+                                                               : nullptr;
+  if (missing == nullptr) return {};
+  return error_at(o.loc, fmt::format("the motor of {} has no '{}'", where, missing),
+                  "a motor with 'torque_constant' needs 'winding_resistance', 'inertia', and a "
+                  "battery or 'voltage'");
+}
+
+Status validate_propeller(const ActuatorOptions& o, bool has_battery, const std::string& where) {
+  if (o.actuators.empty() != !o.propeller)
+    return error_at(
+        o.loc, fmt::format("{} has '{}' alone", where, o.propeller ? "propeller" : "actuators"),
+        "a propeller needs 'actuators', names of actuators at sites, and 'propeller'");
+  if (!o.propeller) return {};
+  if (const char* key = key_of_joints(o); key != nullptr)
+    return error_at(o.loc, fmt::format("{} has '{}', which is for joints", where, key),
+                    "propellers have 'actuators', 'torque_constant', 'winding_resistance', 'delay' "
+                    "and 'propeller'");
+  const PropellerOptions& p = *o.propeller;
+  if (p.zero_torque_advance &&
+      !(p.zero_thrust_advance && *p.zero_torque_advance > *p.zero_thrust_advance))
+    return error_at(
+        o.loc, fmt::format("'zero_torque_advance' of {} is not above 'zero_thrust_advance'", where),
+        "a propeller needs torque as long as it gives thrust");
+  return validate_motor(o, has_battery, where);
+}
+
+Status validate_one(const ActuatorOptions& o, const RobotOptions& robot) {
+  const std::string& names = o.actuators.empty() ? o.joints : o.actuators;
+  const std::string where = fmt::format("actuator '{}' of robot '{}'", names, robot.name);
+  const RE2 pattern(names, RE2::Quiet);
   if (!pattern.ok())
     return error_at(
-        o.loc, fmt::format("'{}' is not a regular expression: {}", o.joints, pattern.error()), "");
+        o.loc, fmt::format("'{}' is not a regular expression: {}", names, pattern.error()), "");
+  GLOAM_TRY_STATUS(validate_propeller(o, robot.actuators && robot.actuators->battery, where));
   GLOAM_TRY_STATUS(validate_torque_speed(o, where));
   GLOAM_TRY_STATUS(validate_thermal(o, where));
   const ActuatorFriction friction = o.friction.value_or(ActuatorFriction{});
@@ -97,7 +153,7 @@ Status validate_battery(const BatteryOptions& o, const SourceLoc& loc, const std
 
 Status validate_actuators(const RobotOptions& robot) {
   for (const ActuatorOptions& actuator : robot.actuator)
-    GLOAM_TRY_STATUS(validate_one(actuator, robot.name));
+    GLOAM_TRY_STATUS(validate_one(actuator, robot));
   if (!robot.actuators) return {};
   const SharedActuatorOptions& shared = *robot.actuators;
   if (robot.actuator.empty())

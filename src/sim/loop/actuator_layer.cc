@@ -68,6 +68,7 @@ bool ActuatorLayers::apply(mjModel* model, mjData* data) {
 void ActuatorLayers::release(mjModel* model, mjData* data) {
   if (!applied_) return;
   applied_ = false;
+  for (const Entry& entry : robots_) entry.layer->observe(*model, *data);
   std::ranges::copy(commanded_, data->ctrl);
   model->opt.disableflags = flags_;
 }

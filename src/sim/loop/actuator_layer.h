@@ -27,6 +27,8 @@ class ActuatorLayer {
   /// Before a step: replaces the controls of its actuators, which are within their limits, by the
   /// applied ones. False and error() when a model fails.
   virtual bool apply(const mjModel& model, mjData& data) = 0;
+  /// After the step; mjData has the poses and velocities of its beginning.
+  virtual void observe(const mjModel& model, const mjData& data) = 0;
   virtual Error error() const = 0;
   /// Hash of all that decides the future, chained from `before`.
   virtual uint64_t hash(uint64_t before) const = 0;

@@ -1,0 +1,185 @@
+// Propellers with fixed pitch on motors whose speed a controller (ESC) sets by the voltage.
+//
+// Propeller (McCormick 1995, "Aerodynamics, Aeronautics, and Flight Mechanics", chapter 6), linear
+// in the advance ratio J = v / (n D): thrust = k_T w² (1 − J / J_T), torque = k_Q w² (1 − J / J_Q)
+// with k_T = C_T ρ D⁴ / 4π² and k_Q = C_P ρ D⁵ / 8π³. Shaft: I dw/dt = k (i − i_0) − torque;
+// winding: i = (U − k w) / R with 0 <= U <= the supply's voltage and |i| <= the current limit.
+// Within these limits the controller lets the speed approach that of the commanded thrust
+// exponentially.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "base/hash.h"
+#include "control/actuators/actuator_model.h"
+
+namespace gloam {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kCreep = 1;  // speed below which the friction of the motor falls to zero [rad/s]
+
+// Change over dt of a speed whose derivative is `rate` and falls by `decay` per speed [1/s]: exact
+// for a linear law, and without a change at its equilibrium.
+double change_over(double dt, double rate, double decay) {
+  const double x = decay * dt;
+  return rate * dt * (x > 1e-9 ? -std::expm1(-x) / x : 1);
+}
+
+struct Rotor {
+  size_t row;
+  double thrust_factor, torque_factor;          // k_T [N s²/rad²], k_Q [N m s²/rad²]
+  double zero_thrust_speed, zero_torque_speed;  // v per shaft speed at which they are zero [m]
+  double nominal_voltage;                       // [V]
+  double highest;                               // commanded thrust at the start [N]
+  double speed = 0;                             // of the shaft [rad/s]
+
+  // At the shaft speed w and the inflow v, for J from −J_T to 2 J_T.
+  double air_speed(double w, double v) const {
+    return std::isinf(zero_thrust_speed)
+               ? v
+               : std::clamp(v, -zero_thrust_speed * w, 2 * zero_thrust_speed * w);
+  }
+  double thrust(double w, double v) const {
+    return thrust_factor * w * (w - air_speed(w, v) / zero_thrust_speed);
+  }
+  double torque(double w, double v) const {
+    return torque_factor * w * (w - air_speed(w, v) / zero_torque_speed);
+  }
+  double speed_of(double static_thrust) const {
+    return std::sqrt(std::max(0.0, static_thrust) / thrust_factor);
+  }
+};
+
+// Torque that friction and iron losses of the motor take [N m].
+double friction_of(const ActuatorOptions& o, double w) {
+  return o.torque_constant * o.propeller->no_load_current * std::min(1.0, w / kCreep);
+}
+
+// Changes of the shaft's speed over dt that the voltage and current of the drive allow.
+struct ChangeRange {
+  double low = -kInfinity, high = kInfinity;  // [rad/s]
+};
+
+ChangeRange change_range(const Rotor& rotor, const Drive& drive, double dt) {
+  const ActuatorOptions& o = drive.options();
+  const double k = o.torque_constant, w = rotor.speed, inertia = o.propeller->inertia;
+  const bool is_off = drive.supply <= 0;
+  if (is_off && inertia == 0) return {-kInfinity, -kInfinity};
+  if (!is_off && k == 0) return {};  // the motor is not modelled
+  const double load = rotor.torque(w, drive.inflow) + friction_of(o, w);
+  const double load_decay = 2 * rotor.torque_factor * w / inertia;  // [1/s]
+  const auto with_current = [&](double i) {
+    return change_over(dt, (k * i - load) / inertia, load_decay);
+  };
+  if (is_off) return {with_current(0), with_current(0)};  // the motor turns freely
+  const auto with_voltage = [&](double volts) {
+    return change_over(dt, (k * (volts - k * w) / o.winding_resistance - load) / inertia,
+                       load_decay + k * k / (o.winding_resistance * inertia));
+  };
+  ChangeRange range{with_voltage(0), with_voltage(drive.supply * rotor.nominal_voltage)};
+  if (const double most = o.propeller->current_limit; most > 0)
+    range = {std::max(range.low, with_current(-most)), std::min(range.high, with_current(most))};
+  return {std::min(range.low, range.high), range.high};
+}
+
+class Propellers final : public ActuatorModel {
+ public:
+  explicit Propellers(std::vector<Rotor> rotors) : rotors_(std::move(rotors)) {}
+
+  std::string_view kind() const override { return "propellers"; }
+  // They turn at the speed of the commanded thrust.
+  void reset(std::span<Drive> drives) override {
+    for (Rotor& rotor : rotors_) {
+      Drive& drive = drives[rotor.row];
+      rotor.speed =
+          rotor.speed_of(std::min(drive.gain * drive.command * drive.gear, rotor.highest));
+      drive.shaft_speed = rotor.speed;
+    }
+  }
+  void take_over(const ActuatorModel& before, std::span<const int> old_row) override {
+    for (Rotor& rotor : rotors_)
+      for (const Rotor& from : static_cast<const Propellers&>(before).rotors_)
+        if (static_cast<int>(from.row) == old_row[rotor.row]) rotor.speed = from.speed;
+  }
+  bool apply(ActuatorStep& step) override {
+    for (Rotor& rotor : rotors_) turn(rotor, step.drives[rotor.row], step.timestep);
+    return true;
+  }
+  uint64_t hash(uint64_t before) const override {
+    for (const Rotor& rotor : rotors_)
+      before = hash_bytes(&rotor.speed, sizeof(rotor.speed), before);
+    return before;
+  }
+  std::unique_ptr<ActuatorModel> clone() const override {
+    return std::make_unique<Propellers>(*this);
+  }
+
+ private:
+  // Thrust and torque are those of the mean speed of the step, so that the energy of the shaft is
+  // in balance with them.
+  static void turn(Rotor& rotor, Drive& drive, double dt) {
+    const ActuatorOptions& o = drive.options();
+    const ChangeRange range = change_range(rotor, drive, dt);
+    const double approach = -std::expm1(-dt / o.propeller->response_time);
+    const double wanted = approach * (rotor.speed_of(drive.torque) - rotor.speed);
+    const double next = std::max(0.0, rotor.speed + std::clamp(wanted, range.low, range.high));
+    const double mean = 0.5 * (rotor.speed + next);
+    const double gain = o.propeller->inertia * (next - rotor.speed) / dt;  // [N m]
+    rotor.speed = next;
+    drive.torque = rotor.thrust(mean, drive.inflow);
+    drive.shaft_speed = mean;
+    drive.shaft_torque =
+        drive.supply > 0 ? gain + rotor.torque(mean, drive.inflow) + friction_of(o, mean) : 0;
+  }
+
+  std::vector<Rotor> rotors_;
+};
+
+Result<Rotor> make_rotor(const ActuatorParts& parts, size_t row) {
+  const DriveSetup& drive = parts.drives[row];
+  const PropellerOptions& o = *drive.options.propeller;
+  const mjModel& m = parts.model;
+  const mjtNum* gear = m.actuator_gear + 6 * drive.output;
+  const double d4 = std::pow(o.diameter, 4), pi = M_PI;
+  Rotor rotor{.row = row};
+  rotor.thrust_factor = o.thrust_coefficient * o.air_density * d4 / (4 * pi * pi);
+  const double reaction = std::abs(mju_dot3(gear, gear + 3)) / mju_dot3(gear, gear);  // [m]
+  rotor.torque_factor = o.power_coefficient ? *o.power_coefficient * o.air_density * d4 *
+                                                  o.diameter / (8 * pi * pi * pi)
+                                            : reaction * rotor.thrust_factor;
+  if (rotor.torque_factor == 0 && drive.options.torque_constant > 0)
+    return Error{ErrorKind::kInput,
+                 fmt::format("the propeller of actuator '{}' of robot '{}' has no torque",
+                             drive.name, parts.robot.name),
+                 drive.options.loc,
+                 "specify 'power_coefficient', or the reaction torque in the actuator's gear"};
+  const double turn = o.diameter / (2 * pi);  // J = v / (w · turn)
+  rotor.zero_thrust_speed = o.zero_thrust_advance ? *o.zero_thrust_advance * turn : kInfinity;
+  rotor.zero_torque_speed = o.zero_torque_advance ? *o.zero_torque_advance * turn : kInfinity;
+  const auto& shared = parts.robot.actuators;
+  rotor.nominal_voltage = shared && shared->battery ? nominal_voltage(*shared->battery) : o.voltage;
+  const int a = drive.actuator;
+  rotor.highest = kInfinity;
+  if (m.actuator_ctrllimited[drive.ctrl])
+    rotor.highest = m.actuator_gainprm[mjNGAIN * a] * m.actuator_ctrlrange[2 * drive.ctrl + 1] *
+                    mju_norm3(gear);
+  return rotor;
+}
+
+}  // namespace
+
+Result<std::unique_ptr<ActuatorModel>> make_propellers(const ActuatorParts& parts) {
+  std::vector<Rotor> rotors;
+  for (size_t row = 0; row < parts.drives.size(); ++row) {
+    if (!parts.drives[row].options.propeller) continue;
+    GLOAM_TRY(rotors.emplace_back(), make_rotor(parts, row));
+  }
+  if (rotors.empty()) return std::unique_ptr<ActuatorModel>();
+  return std::unique_ptr<ActuatorModel>(std::make_unique<Propellers>(std::move(rotors)));
+}
+
+}  // namespace gloam
