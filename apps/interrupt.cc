@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "command.h"
+#include "gloam/teleop.h"
 
 namespace gloam::cli {
 namespace {
@@ -40,7 +41,9 @@ CleanUps& clean_ups() {
 
 void on_signal(int signal) {
   // The second one does not wait for files. SIGXCPU comes every second from then on.
-  if (stop_requested.exchange(true) && signal != SIGXCPU) ::_exit(128 + signal);
+  if (!stop_requested.exchange(true) || signal == SIGXCPU) return;
+  restore_terminal();
+  ::_exit(128 + signal);
 }
 
 void end_process(const Error& error) {
@@ -49,6 +52,7 @@ void end_process(const Error& error) {
     for (const auto& clean_up : clean_ups().list)
       if (clean_up) clean_up();
   }
+  restore_terminal();
   ::_exit(fail(error));
 }
 

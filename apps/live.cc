@@ -8,6 +8,7 @@
 #include "gloam/log_player.h"
 #include "print.h"
 #include "report.h"
+#include "status_line.h"
 
 namespace gloam::cli {
 namespace {
@@ -20,10 +21,33 @@ Status play_again(const LiveRun& run, const LiveCommand& command) {
   return player->seek(0);
 }
 
-Status keep_running(const LiveRun& run, const LiveCommand& command, const Bridges* bridges,
-                    const LogStream* log) {
+/// What serves a live run; null = not requested.
+struct LiveParts {
+  std::unique_ptr<ViewServer> page;
+  std::unique_ptr<LogStream> log;
+  std::unique_ptr<Bridges> bridges;
+  std::unique_ptr<Teleop> teleop;
+};
+
+void show_teleop(Teleop& teleop, const Simulation& simulation, StatusLine* line) {
+  const std::vector<std::string> notices = teleop.take_notices();
+  if (!notices.empty()) line->clear();
+  for (const std::string& notice : notices) tell("gloam: {}\n", notice);
+  line->show(fmt::format("{}  {:.2f}x real time{}", teleop.status(),
+                         simulation.stats().realtime_factor,
+                         simulation.paused() ? "  paused" : ""));
+}
+
+Status keep_running(const LiveRun& run, const LiveCommand& command, const LiveParts& parts) {
+  const Bridges* const bridges = parts.bridges.get();
+  const LogStream* const log = parts.log.get();
+  StatusLine line;
   while (!interrupted()) {
     std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    if (parts.teleop != nullptr) {
+      show_teleop(*parts.teleop, run.simulation, &line);
+      if (parts.teleop->end_asked()) break;
+    }
     GLOAM_TRY_STATUS(play_again(run, command));
     GLOAM_TRY_STATUS(run.simulation.status());
     if (log != nullptr) GLOAM_TRY_STATUS(log->status());
@@ -79,46 +103,55 @@ BridgeOptions LiveCommand::options(const BridgeOptions& scene) const {
   return bridges;
 }
 
-int run_live(LiveRun run, const LiveCommand& command, EndOnInterrupt& starting) {
+namespace {
+
+Result<LiveParts> start_parts(LiveRun& run, const LiveCommand& command) {
   Simulation& simulation = run.simulation;
-  simulation.set_pace(run.pace, command.speed);
-  std::unique_ptr<ViewServer> page;
+  LiveParts parts;
   if (command.view) {
     if (command.port) run.view.port = *command.port;
     run.view.speed = command.speed;
     run.view.pace = run.pace;
-    auto started = ViewServer::start(simulation, run.view);
-    if (!started.ok()) return fail(started.error());
-    page = std::move(*started);
-    std::fprintf(stderr, "gloam: open %s\n", page->url().c_str());
+    GLOAM_TRY(parts.page, ViewServer::start(simulation, run.view));
+    std::fprintf(stderr, "gloam: open %s\n", parts.page->url().c_str());
   }
-  std::unique_ptr<LogStream> log;
   if (!run.log.file.empty()) {
     run.log.required = false;
-    auto started = start_log(simulation, run.log);
-    if (!started.ok()) return fail(started.error());
-    log = std::move(*started);
+    GLOAM_TRY(parts.log, start_log(simulation, run.log));
   }
-  std::unique_ptr<Bridges> bridges;
   if (run.bridges.any()) {
-    auto started = Bridges::start(simulation, run.bridges, run.view.player);
-    if (!started.ok()) return fail(started.error());
-    bridges = std::move(*started);
-    for (const auto& bridge : bridges->list())
+    GLOAM_TRY(parts.bridges, Bridges::start(simulation, run.bridges, run.view.player));
+    for (const auto& bridge : parts.bridges->list())
       tell("gloam: {}: {}\n", bridge->name(), bridge->address());
   }
+  if (run.teleop) {
+    GLOAM_TRY(parts.teleop, Teleop::start(simulation, *run.teleop));
+    tell("gloam: {}\n", parts.teleop->help());
+  }
+  return parts;
+}
+
+}  // namespace
+
+int run_live(LiveRun run, const LiveCommand& command, EndOnInterrupt& starting) {
+  Simulation& simulation = run.simulation;
+  simulation.set_pace(run.pace, command.speed);
+  auto started = start_parts(run, command);
+  if (!started.ok()) return fail(started.error());
+  LiveParts& parts = *started;
   stop_on_interrupt();
   starting.release();
   begin(run, command);
-  const Status status = keep_running(run, command, bridges.get(), log.get());
-  if (log != nullptr) finish_on_interrupt();
-  bridges.reset();  // no client changes the end of the log
-  if (page != nullptr) page->stop();
+  const Status status = keep_running(run, command, parts);
+  if (parts.log != nullptr) finish_on_interrupt();
+  parts.teleop.reset();   // the robot stops
+  parts.bridges.reset();  // no client changes the end of the log
+  if (parts.page != nullptr) parts.page->stop();
   int code = status.ok() ? 0 : fail(status.error());
   const SimulationStats stats = simulation.stats();
   for (const std::string& line : sensor_table(stats.sensors)) tell("{}\n", line);
-  if (log != nullptr) {
-    if (const Status finished = log->finish(); !finished.ok()) code = fail(finished.error());
+  if (parts.log != nullptr) {
+    if (const Status finished = parts.log->finish(); !finished.ok()) code = fail(finished.error());
     tell("gloam: {}\n", run.log.file.string());
   }
   return code;

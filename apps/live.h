@@ -7,6 +7,7 @@
 #include "command.h"
 #include "gloam/bridge.h"
 #include "gloam/log.h"
+#include "gloam/teleop.h"
 #include "gloam/view.h"
 #include "interrupt.h"
 
@@ -36,6 +37,7 @@ struct LiveRun {
   ViewOptions view = {};
   BridgeOptions bridges = {};
   Pace pace = Pace::kRealTime;
+  std::optional<TeleopOptions> teleop = {};
   LogRequest log = {};                  ///< no file = none
   std::optional<double> duration = {};  ///< [s]; empty = until Ctrl-C
 };

@@ -7,6 +7,8 @@
 #include <new>
 #include <string_view>
 
+#include "gloam/teleop.h"
+
 namespace gloam::cli {
 namespace {
 
@@ -30,6 +32,7 @@ void on_terminate() {
 void end_when_out_of_memory() { previous_handler = std::set_terminate(on_terminate); }
 
 void end_out_of_memory() {
+  restore_terminal();
   constexpr std::string_view kText =
       "gloam: error: out of memory (lower the resolution or the size of the scene)\n";
   [[maybe_unused]] const auto written = ::write(STDERR_FILENO, kText.data(), kText.size());

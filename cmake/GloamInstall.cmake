@@ -7,7 +7,7 @@ set(CMAKE_INSTALL_LIBDIR lib)  # the same everywhere: the program looks for its 
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
-set(modules base trajectory ros mcap geometry places scene world instant sim render sensors policy control metrics topics record runtime report web bridge studio)
+set(modules base trajectory ros mcap geometry places scene world instant sim render sensors policy control metrics topics record runtime report web bridge studio teleop)
 list(TRANSFORM modules PREPEND gloam_)
 add_library(gloam_library SHARED)
 foreach(module IN LISTS modules)

@@ -7,7 +7,7 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parent.parent
 ORDER = ["base", "trajectory", "ros", "mcap", "geometry", "places", "scene", "world", "instant", "sim", "render", "sensors", "policy", "control", "metrics", "topics", "record",
          "runtime", "report"]
-OUTSIDERS = ["src/web", "src/bridge", "src/studio", "src/python", "apps"]
+OUTSIDERS = ["src/web", "src/bridge", "src/studio", "src/teleop", "src/python", "apps"]
 OUTSIDERS_MAY = {"src/bridge": {"ros"}, "src/python": {"ros"}}  # messages of a standard, independent of the simulator
 MUJOCO_LIST = re.compile(r"MuJoCo's types are visible only in `([a-z/ ]+)` and in `([a-z/]+)`")  # in ARCHITECTURE.md
 # memcpy is how bits are reinterpreted on both sides; intrinsics stand behind guards of the host.

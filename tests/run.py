@@ -30,7 +30,7 @@ BUILD = ROOT / "build"
 CLANG = "-19"
 AS_BUILT = {"GLOAM_AS_BUILT": "1"}  # ./gloam in a test builds nothing: others run the program that it would link anew
 UNIT = ["base", "trajectory", "ros", "mcap", "geometry", "places", "scene", "world", "sim", "render", "sensors", "control", "metrics", "topics", "record", "runtime",
-        "report", "web", "bridge", "studio"]
+        "report", "web", "bridge", "studio", "teleop"]
 
 
 class Tally:

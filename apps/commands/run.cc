@@ -19,6 +19,12 @@ struct RunCommand {
   bool overwrite = false, realtime = false, mcap = false;
   std::optional<double> at;  ///< [s]
   LiveCommand live;
+  CLI::Option* teleop = nullptr;  ///< --teleop
+  TeleopOptions teleop_options;
+
+  bool is_live(const BridgeOptions& bridges) const {
+    return live.any(bridges) || teleop->count() > 0;
+  }
 };
 
 int keep_live(const World& world, const RunRequest& request, const RunCommand& command) {
@@ -42,6 +48,7 @@ int keep_live(const World& world, const RunRequest& request, const RunCommand& c
   run.bridges = command.live.options(scene.bridge);
   run.pace = request.simulation.pace;
   run.log = request.log;
+  if (command.teleop->count() > 0) run.teleop = command.teleop_options;
   run.duration = command.options.duration;
   return run_live(std::move(run), command.live, starting);
 }
@@ -63,7 +70,7 @@ int run_world(const World& world, RunRequest request, const RunCommand& command,
               const Globals& globals) {
   const Scene& scene = world.scene();
   request.out = command.out;
-  const bool is_live = command.live.any(scene.bridge);
+  const bool is_live = command.is_live(scene.bridge);
   if (request.out.empty() && (is_live ? command.mcap : scene.bare_model.empty()))
     request.out = std::filesystem::path("results") / scene.name;
   // The World of a log has the [record] table of that run; otherwise the flag is in the scene.
@@ -109,6 +116,9 @@ int run_on(const RunCommand& command, const Globals& globals) {
 
 int run(const RunCommand& command_line, const Globals& globals) {
   RunCommand command = command_line;
+  if (command.teleop->count() > 0)
+    if (const Status status = check_teleop(command.teleop_options); !status.ok())
+      return fail(status.error());
   if (command.at) return run_on(command, globals);
   auto scene = command.options.load(command.file);
   if (!scene.ok()) return fail(scene.error());
@@ -117,7 +127,7 @@ int run(const RunCommand& command_line, const Globals& globals) {
     return fail(status.error());
   scene->record.mcap |= command.mcap;
   // Live pictures are quick ones unless the user asked for light on the command line.
-  if (command.live.any(scene->bridge) && command.options.tier.empty()) {
+  if (command.is_live(scene->bridge) && command.options.tier.empty()) {
     scene->render.tier = "direct";
     scene->render.spp = 1;
     scene->render.denoise = false;
@@ -149,6 +159,16 @@ void add_run(CLI::App& app, Globals& globals, Action& action) {
   sub->add_flag("--realtime", command->realtime,
                 "Short for --pace realtime; default without a live view: as fast as possible");
   command->live.add_to(*sub);
+  command->teleop =
+      sub->add_option("--teleop", command->teleop_options.robot,
+                      "Drive a robot with the keyboard or a gamepad (docs/controllers.md); without "
+                      "its name, the first robot that accepts velocity or pose goals")
+          ->option_text("[ROBOT]")
+          ->expected(0, 1);
+  sub->add_option("--gamepad", command->teleop_options.gamepad,
+                  "Gamepad of --teleop; default: the first of /dev/input/js*")
+      ->option_text("DEVICE")
+      ->needs(command->teleop);
   sub->add_option("--at", command->at,
                   "Resume the log FILE at this time in seconds, for --duration more seconds")
       ->check(non_negative_number());
@@ -156,7 +176,8 @@ void add_run(CLI::App& app, Globals& globals, Action& action) {
       "Examples:\n  gloam run examples/demo.toml --duration 3\n  gloam run robot.xml --out "
       "results/robot --camera front\n  gloam run examples/lidar.toml --duration 1 --output "
       "lidar,sensors,depth_exr\n  gloam run robot.urdf --view\n  gloam run examples/demo.toml "
-      "--ros2 --view\n  gloam run examples/demo.toml --zmq --pace sensors\n  gloam run run.mcap "
+      "--ros2 --view\n  gloam run examples/quadrotor_gusts.toml --teleop --view\n  gloam run "
+      "examples/demo.toml --zmq --pace sensors\n  gloam run run.mcap "
       "--at 2.5 "
       "--duration 3 --out results/branch");
   sub->callback([&globals, &action, command] {

@@ -2,9 +2,11 @@
 // Controller "gripper": opens and closes fingers together, with a limited force.
 
 #include <memory>
+#include <optional>
 
 #include "gloam/controller.h"
 #include "gloam/result.h"
+#include "gloam/robot_goals.h"
 #include "world/world.h"
 
 namespace gloam {
@@ -14,5 +16,8 @@ namespace gloam {
 /// driven joint with limits.
 Result<std::unique_ptr<Controller>> make_gripper_controller(const CompiledWorld& world,
                                                             const RobotInstance& robot);
+
+/// The first joint of such a gripper that takes goals. Empty: none has limits.
+std::optional<FingerGoal> finger_goal(const mjModel& model, const RobotInstance& robot);
 
 }  // namespace gloam

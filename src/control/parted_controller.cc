@@ -177,25 +177,32 @@ class PartedController final : public Controller {
 
 }  // namespace
 
-Result<std::unique_ptr<Controller>> make_parted_controller(
-    const std::shared_ptr<const CompiledWorld>& world, const RobotInstance& robot) {
-  std::vector<JointActuator> rows = joint_actuators(*world->model, robot);
+Result<std::vector<ControlledPart>> robot_parts(const mjModel& model, const RobotInstance& robot) {
+  std::vector<ControlledPart> parts;
+  if (robot.options.parts.empty()) return std::vector<ControlledPart>{{"", robot}};
+  std::vector<JointActuator> rows = joint_actuators(model, robot);
   GLOAM_TRY_STATUS(claim_all(robot, &rows));
-  std::vector<PartedController::Child> children;
-  const auto add = [&](RobotInstance instance, const RobotPart* part) -> Status {
+  const auto add = [&](std::string name, const ControllerOptions& options, const RobotPart* part) {
+    RobotInstance instance = robot;
+    instance.options.controller = options;
     instance.options.parts.clear();
     instance.actuators = actuators_of(rows, part);
-    GLOAM_TRY(auto controller, make_controller(world, instance));
-    if (controller == nullptr) return {};
-    children.push_back(
-        {part == nullptr ? "" : part->name, std::move(controller), instance.options.controller});
-    return {};
+    parts.push_back({std::move(name), std::move(instance)});
   };
-  GLOAM_TRY_STATUS(add(robot, nullptr));
-  for (const RobotPart& part : robot.options.parts) {
-    RobotInstance instance = robot;
-    instance.options.controller = part.controller;
-    GLOAM_TRY_STATUS(add(std::move(instance), &part));
+  add("", robot.options.controller, nullptr);
+  for (const RobotPart& part : robot.options.parts) add(part.name, part.controller, &part);
+  return parts;
+}
+
+Result<std::unique_ptr<Controller>> make_parted_controller(
+    const std::shared_ptr<const CompiledWorld>& world, const RobotInstance& robot) {
+  GLOAM_TRY(std::vector<ControlledPart> parts, robot_parts(*world->model, robot));
+  std::vector<PartedController::Child> children;
+  for (ControlledPart& part : parts) {
+    GLOAM_TRY(auto controller, make_controller(world, part.robot));
+    if (controller == nullptr) continue;
+    children.push_back(
+        {std::move(part.name), std::move(controller), part.robot.options.controller});
   }
   return std::unique_ptr<Controller>(std::make_unique<PartedController>(std::move(children)));
 }

@@ -91,6 +91,20 @@ Status apply_params(const ControllerOptions& options, GaitOptions* gait) {
   return error;
 }
 
+Result<std::shared_ptr<const Policy>> load_policy(const CompiledWorld& world,
+                                                  const ControllerOptions& options,
+                                                  NetworkLoader loader) {
+  if (options.network.empty() && options.settings.empty())
+    return Error{ErrorKind::kInput, "controller 'policy' needs a network", options.loc,
+                 "set network = \"policy.onnx\" in [robot.controller]"};
+  // Clients of bridges may set these paths: they reach the files that the scene could name.
+  fs::path network = options.network, settings = options.settings;
+  GLOAM_TRY(const FileFinder finder, FileFinder::of_scene(world.scene.file, world.scene.access));
+  GLOAM_TRY_STATUS(finder.find(&network, options.loc));
+  GLOAM_TRY_STATUS(finder.find(&settings, options.loc));
+  return Policy::load(network, settings, loader);
+}
+
 }  // namespace
 
 Result<int64_t> steps_per_action(double rate, double timestep) {
@@ -109,15 +123,7 @@ Result<std::unique_ptr<Controller>> make_policy_controller(const CompiledWorld& 
                                                            const RobotInstance& robot,
                                                            NetworkLoader loader) {
   const ControllerOptions& options = robot.options.controller;
-  if (options.network.empty() && options.settings.empty())
-    return Error{ErrorKind::kInput, "controller 'policy' needs a network", options.loc,
-                 "set network = \"policy.onnx\" in [robot.controller]"};
-  // Clients of bridges may set these paths: they reach the files that the scene could name.
-  fs::path network = options.network, settings = options.settings;
-  GLOAM_TRY(const FileFinder finder, FileFinder::of_scene(world.scene.file, world.scene.access));
-  GLOAM_TRY_STATUS(finder.find(&network, options.loc));
-  GLOAM_TRY_STATUS(finder.find(&settings, options.loc));
-  GLOAM_TRY(std::shared_ptr<const Policy> policy, Policy::load(network, settings, loader));
+  GLOAM_TRY(std::shared_ptr<const Policy> policy, load_policy(world, options, loader));
   GaitOptions gait = policy->spec.gait;
   GLOAM_TRY_STATUS(apply_params(options, &gait));
   const TermBinding binding{world.model.get(), &robot, &policy->spec};
@@ -134,6 +140,12 @@ Result<std::unique_ptr<Controller>> make_policy_controller(const CompiledWorld& 
 Result<std::unique_ptr<Controller>> make_policy_controller(const CompiledWorld& world,
                                                            const RobotInstance& robot) {
   return make_policy_controller(world, robot, load_onnx_network);
+}
+
+Result<std::array<std::array<double, 2>, 3>> policy_command_ranges(const CompiledWorld& world,
+                                                                   const RobotInstance& robot) {
+  GLOAM_TRY(const auto policy, load_policy(world, robot.options.controller, load_onnx_network));
+  return policy->spec.command_ranges;
 }
 
 }  // namespace gloam

@@ -1,6 +1,8 @@
 #pragma once
 // The controller type "policy".
 
+#include <array>
+
 #include "gloam/controller.h"
 #include "policy/network.h"
 #include "world/world.h"
@@ -13,6 +15,11 @@ Result<std::unique_ptr<Controller>> make_policy_controller(const CompiledWorld& 
                                                            NetworkLoader loader);
 Result<std::unique_ptr<Controller>> make_policy_controller(const CompiledWorld& world,
                                                            const RobotInstance& robot);
+
+/// Range of each axis of the velocity goal (PolicySpec::command_ranges) of a robot with such a
+/// controller. Errors: as for Policy::load().
+Result<std::array<std::array<double, 2>, 3>> policy_command_ranges(const CompiledWorld& world,
+                                                                   const RobotInstance& robot);
 
 /// Control periods of a policy in steps of a simulation. Error: they are not whole steps.
 Result<int64_t> steps_per_action(double rate, double timestep);
