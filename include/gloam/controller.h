@@ -75,6 +75,9 @@ class Controller {
   /// Returns a copy that continues exactly as this controller would. Null: it cannot be copied;
   /// checkpoints are then restored by stepping the run again.
   virtual std::unique_ptr<Controller> clone() const { return nullptr; }
+  /// The robot's own controller where this one calls it beside those of the robot's parts; null =
+  /// only parts have controllers.
+  virtual const Controller* own() const { return this; }
 };
 
 /// The robot for which a controller is created, and its World.
@@ -100,6 +103,9 @@ Result<std::vector<double>> controller_param(const ControllerOptions& options,
 std::string to_toml(const ControllerOptions& options);
 /// Reads them. Errors: as in a scene file, with the nearest names.
 Result<ControllerOptions> parse_controller(std::string_view toml);
+
+/// Returns the controller that the scene of a World gives a robot. Error: no such robot.
+Result<ControllerOptions> scene_controller(const World& world, Robot robot);
 
 /// All types in the order of registration; Gloam's own come first.
 std::vector<std::string> controller_types();

@@ -8,7 +8,7 @@ import weakref
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -23,6 +23,9 @@ from .mujoco_memory import MujocoMemory
 from .progress import ProgressLike
 from .scene import Scene, as_scene
 from .world import World
+
+if TYPE_CHECKING:
+    from .policy import PolicyDriver
 
 Pace = Literal["lockstep", "fast", "realtime", "sensors"]
 _alive: weakref.WeakSet[Simulation] = weakref.WeakSet()
@@ -67,6 +70,7 @@ class Simulation:
         self._solver = _core.Solver()
         self._renderer: Any = None
         self._leases: dict[str, Any] = {}
+        self._drives: dict[str, PolicyDriver] = {}  # of robots that a policy drives
         self._other: Simulation | None = None
         self._log: Any = None
         self._metrics: Any = None
@@ -214,6 +218,8 @@ class Simulation:
         self._core.reset()
         if self._metrics is not None:
             self._metrics.begin()
+        for drive in self._drives.values():
+            drive._after_reset()
 
     def checkpoint(self) -> Checkpoint:
         return Checkpoint(self._core.checkpoint())
@@ -246,6 +252,7 @@ class Simulation:
         """Continues in another World and releases the previous one, which may have 100 MB."""
         self._world = world
         self._core_world = world._world
+        self._drives = {name: drive for name, drive in self._drives.items() if name in self.robots}
         self._renderer = None
         self._solver = _core.Solver()
         if self._other is not None:

@@ -84,6 +84,13 @@ std::vector<std::string> controller_types() {
   return {names.begin(), names.end()};
 }
 
+Result<ControllerOptions> scene_controller(const World& world, Robot robot) {
+  const std::vector<RobotInstance>& robots = world.compiled()->robots;
+  if (robot.id >= 0 && robot.id < std::ssize(robots))
+    return robots[static_cast<size_t>(robot.id)].options.controller;
+  return Error{ErrorKind::kUsage, fmt::format("there is no robot number {}", robot.id)};
+}
+
 bool has_logged_controls(const ControllerOptions& options) {
   return std::ranges::any_of(kControllers, [&](const OwnController& own) {
     return own.is_logged && own.name == options.type;

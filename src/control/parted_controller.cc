@@ -165,6 +165,11 @@ class PartedController final : public Controller {
     return copy;
   }
 
+  const Controller* own() const override {
+    const Controller* const found = find("");
+    return found != nullptr ? found->own() : nullptr;
+  }
+
  private:
   const Controller* find(const std::string& part) const {
     const auto row = std::ranges::find(children_, part, &Child::part);

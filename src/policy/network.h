@@ -8,15 +8,10 @@
 #include <utility>
 #include <vector>
 
+#include "gloam/policy.h"
 #include "gloam/result.h"
 
 namespace gloam {
-
-/// An input or output. Multi-dimensional tensors are flattened, the last dimension fastest.
-struct NetworkPort {
-  std::string name;
-  size_t size = 0;  ///< numbers for one observation
-};
 
 /// A network that is ready to run, with buffers of its own. One thread at a time.
 class Network {

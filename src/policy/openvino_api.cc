@@ -98,8 +98,9 @@ Result<OpenvinoApi> load_library() {
   return Error{ErrorKind::kUnsupported,
                "OpenVINO, which runs the networks of policies, is not installed",
                {},
-               "run pip install --no-deps --target .venv/wheels openvino==2026.4.1 in Gloam's "
-               "folder, or set GLOAM_OPENVINO to the folder of its package" +
+               "run pip install openvino for a Python program, or pip install --no-deps --target "
+               ".venv/wheels openvino==2026.4.1 in Gloam's folder, or set GLOAM_OPENVINO to the "
+               "folder of its package" +
                    (reason.empty() ? "" : "; " + reason)};
 }
 

@@ -2,8 +2,10 @@
 // The controller type "policy".
 
 #include <array>
+#include <optional>
 
 #include "gloam/controller.h"
+#include "gloam/policy.h"
 #include "policy/network.h"
 #include "world/world.h"
 
@@ -20,6 +22,9 @@ Result<std::unique_ptr<Controller>> make_policy_controller(const CompiledWorld& 
 /// controller. Errors: as for Policy::load().
 Result<std::array<std::array<double, 2>, 3>> policy_command_ranges(const CompiledWorld& world,
                                                                    const RobotInstance& robot);
+
+/// State of a robot's controller if it is a policy.
+std::optional<PolicyState> state_of_policy(const Controller& controller);
 
 /// Control periods of a policy in steps of a simulation. Error: they are not whole steps.
 Result<int64_t> steps_per_action(double rate, double timestep);

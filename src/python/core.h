@@ -204,5 +204,6 @@ void bind_logs(nb::module_& m);
 void bind_runs(nb::module_& m);
 void bind_tools(nb::module_& m);
 void bind_ik(nb::module_& m);
+void bind_policy(nb::module_& m);
 
 }  // namespace gloam::python

@@ -33,4 +33,5 @@ NB_MODULE(_core, m) {
   bind_runs(m);
   bind_tools(m);
   bind_ik(m);
+  bind_policy(m);
 }

@@ -4,12 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
 
+import gloam
 import numpy as np
 import onnx
-import pytest
-from gloam.policy import Policy
+from gloam.policy import Policy, PolicyDriver
 from onnx import TensorProto, helper, numpy_helper
 
 # Two hinges that hang below a floating base. Names of joints and motors differ; the motor of "knee" has a gear.
@@ -139,14 +138,15 @@ def held_policy(folder: Path, terms: str = OBSERVATION, size: int = 7, extra: st
 
 
 class Seen:
-    """A policy whose observations are kept."""
+    """Steps a simulation and keeps the observations of a policy, one for each control period of `every` steps."""
 
-    def __init__(self, policy: Policy, monkeypatch: pytest.MonkeyPatch) -> None:
+    def __init__(self, sim: gloam.Simulation, drive: PolicyDriver, every: int = 4) -> None:
+        self.sim, self.drive, self.every = sim, drive, every
         self.observations: list[np.ndarray] = []
-        infer = policy.infer
 
-        def keep(observation: Any) -> Any:
-            self.observations.append(np.array(observation))
-            return infer(observation)
-
-        monkeypatch.setattr(policy, "infer", keep)
+    def step(self, n: int = 1) -> None:
+        for _ in range(n):
+            acts = self.sim.step_count % self.every == 0
+            self.sim.step()
+            if acts:
+                self.observations.append(self.drive.observation)

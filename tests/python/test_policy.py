@@ -35,14 +35,15 @@ def joint_state(sim: gloam.Simulation) -> tuple[np.ndarray, np.ndarray]:
 
 def test_torques_are_the_policys_at_every_step_whatever_the_gear(sim: gloam.Simulation, tmp_path: Path) -> None:
     drive = held_policy(tmp_path).attach(sim, "bot")
-    assert not drive.is_servo
     targets = DEFAULTS + 0.5 * HELD
+    assert not drive.is_active and drive.action.tolist() == [0, 0] and drive.targets.tolist() == DEFAULTS.tolist()
     for _ in range(20):
         q, v = joint_state(sim)
         sim.step()
         np.testing.assert_allclose(
             sim.memory.array("actuator_force") * [1, 2], (KP * (targets - q) - KD * v)[::-1], atol=1e-12
         )
+    assert drive.is_active and not drive.is_servo and drive.action.tolist() == HELD.tolist()
     np.testing.assert_allclose(drive.targets, targets, atol=1e-7)
     assert abs(joint_state(sim)[0]).min() > 0.01  # it moved
 
@@ -72,8 +73,8 @@ def test_servos_of_the_same_gains_get_targets(tmp_path: Path) -> None:
     servos = '<position name="a" joint="hip" kp="20" kv="0.5"/><position name="b" joint="knee" kp="10" kv="0.5"/>'
     with gloam.load(write_scene(tmp_path, servos)) as sim:
         drive = held_policy(tmp_path).attach(sim, "bot")
-        assert drive.is_servo
         sim.step()
+        assert drive.is_servo
         np.testing.assert_allclose(sim.robots["bot"].controls, (DEFAULTS + 0.5 * HELD)[::-1], atol=1e-7)
 
 
@@ -100,23 +101,35 @@ def test_reset_gives_the_same_run_and_leaves_others_alone(tmp_path: Path) -> Non
         assert a.hash == alone.hash and b.hash == alone.hash
 
 
-def test_restore_begins_anew(sim: gloam.Simulation, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    policy = held_policy(tmp_path, '[[observation]]\nterm = "last_action"\n', 2)
-    seen = Seen(policy, monkeypatch)
-    policy.attach(sim, "bot")
+def test_restore_continues_the_history_of_the_checkpoint(sim: gloam.Simulation, tmp_path: Path) -> None:
+    weights = np.random.default_rng(1).normal(size=(2, 6)) / 3
+    terms = '[[observation]]\nterm = "joint_pos"\nhistory = 3\n'
+    policy = Policy(write_network(tmp_path / "p.onnx", weights, HELD), write_settings(tmp_path, POLICY + terms))
+    drive = policy.attach(sim, "bot")
     sim.step(10)
     there = sim.checkpoint()
     sim.step(10)
+    first = sim.hash, drive.observation.tolist()
     sim.restore(there)
-    sim.step()
-    assert seen.observations[-1].tolist() == [0, 0]
+    assert drive.is_active
+    sim.step(10)
+    assert (sim.hash, drive.observation.tolist()) == first
 
 
-def test_recompile_goes_on_with_the_new_world(
-    sim: gloam.Simulation, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    policy = held_policy(tmp_path)
-    seen = Seen(policy, monkeypatch)
+def test_reset_starts_from_the_beginning_with_the_same_command(sim: gloam.Simulation, tmp_path: Path) -> None:
+    policy = held_policy(tmp_path, '[[observation]]\nterm = "last_action"\n[[observation]]\nterm = "command_lin_vel"\n', 4)
+    drive = policy.attach(sim, "bot")
+    drive.command(vx=0.5)
+    for again in (sim.reset, drive.reset):
+        sim.step(8)
+        assert drive.observation.tolist() == [*HELD, 0.5, 0]
+        again()
+        sim.step()
+        assert drive.observation.tolist() == [0, 0, 0.5, 0]
+
+
+def test_recompile_goes_on_with_the_new_world(sim: gloam.Simulation, tmp_path: Path) -> None:
+    policy = held_policy(tmp_path, '[[observation]]\nterm = "time_step"\n', 1)
     drive = policy.attach(sim, "bot")
     sim.step(10)
     scene = sim.scene
@@ -129,7 +142,9 @@ def test_recompile_goes_on_with_the_new_world(
     force = sim.memory.array("actuator_force")
     assert force[names.index("bot/m_knee")] * 2 == pytest.approx(torque[0])
     assert force[names.index("another/m_knee")] == 0
-    assert len(seen.observations) == 3  # at steps 0, 4 and 8: the rhythm goes on
+    assert drive.observation.tolist() == [2]  # steps 0, 4 and 8: the rhythm goes on
+    sim.step(2)
+    assert drive.observation.tolist() == [3]
 
 
 def test_two_robots_by_one_policy_and_detach(tmp_path: Path) -> None:
@@ -147,9 +162,64 @@ def test_two_robots_by_one_policy_and_detach(tmp_path: Path) -> None:
             assert isinstance(two, PolicyDriver)
         sim.step(10)
         np.testing.assert_array_equal(sim.robots["two"].controls, left)
+        assert one.is_active and not two.is_active
         one.detach()
         one.detach()
         policy.attach(sim, "bot")
+
+
+def test_detach_returns_to_the_controller_of_the_scene(tmp_path: Path) -> None:
+    path = write_scene(tmp_path)
+    path.write_text(path.read_text() + '[robot.controller]\ntype = "torque"\ntarget = [0.25, 0.5]\n')
+    with gloam.load(path) as sim:
+        drive = held_policy(tmp_path).attach(sim, "bot")
+        sim.step(8)
+        assert drive.is_active
+        drive.detach()
+        sim.step()
+        assert not drive.is_active
+        np.testing.assert_allclose(sim.robots["bot"].controls, [0.25, 0.25])  # the knee has a gear of 2
+
+
+def test_another_controller_replaces_the_policy(sim: gloam.Simulation, tmp_path: Path) -> None:
+    drive = held_policy(tmp_path).attach(sim, "bot")
+    sim.step()
+    sim.robots["bot"].set_controller("torque")
+    sim.step()
+    assert not drive.is_active and sim.robots["bot"].controls.tolist() == [0, 0]
+
+
+def test_the_step_hook_is_free_and_sees_the_policy(sim: gloam.Simulation, tmp_path: Path) -> None:
+    drive = held_policy(tmp_path).attach(sim, "bot")
+    seen: list[np.ndarray] = []
+    sim.on_step(lambda _memory: seen.append(drive.action))
+    sim.step(5)
+    assert np.array(seen).tolist() == [HELD.tolist()] * 5
+
+
+def test_terms_and_networks_of_scenes_work_from_python(sim: gloam.Simulation, tmp_path: Path) -> None:
+    """A chain of two networks, a gait clock, a height scan and a recurrent state."""
+    write_network(tmp_path / "scan.onnx", np.full((1, 6), 1 / 6), name="height")
+    write_network(tmp_path / "body.onnx", np.array([[0, 0, 0, 0, 1, 0], [0, 0, 0, 0, 0, 0.5]]), np.array([0, 1]))
+    text = POLICY + "[policy.gait]\nfrequency = 2.0\n"
+    text += '[[network]]\nname = "scan"\nfile = "scan.onnx"\n[[network.observation]]\nterm = "height_scan"\n'
+    text += 'size = [0.2, 0.1]\nresolution = 0.1\noffset = 0.0\n[[network]]\nname = "body"\nfile = "body.onnx"\n'
+    text += '[[network.observation]]\nterm = "gait_clock"\n[[network.observation]]\nfrom = "scan"\n'
+    text += '[[network.observation]]\nfrom = "body"\nfirst = 1\n'
+    policy = Policy(None, write_settings(tmp_path, text))
+    assert [network.name for network in policy.spec.networks] == ["scan", "body"]
+    assert policy.spec.networks[0].inputs == {"obs": 6} and policy.spec.networks[1].outputs == {"actions": 2}
+    assert [(term.name, term.size, term.source) for term in policy.spec.terms] == [
+        ("gait_clock", 4, ""), ("network_output", 1, "scan"), ("network_output", 1, "body"),
+    ]
+    drive = policy.attach(sim, "bot")
+    sim.step(5)
+    clock = np.sin(2 * np.pi * 2 * 2.0 / 50 + np.pi * np.array([1, 0, 0, 1]))
+    np.testing.assert_allclose(drive.observation, [*clock, 10, 1], atol=1e-5)  # there is no ground: the range of 10 m
+    np.testing.assert_allclose(drive.inputs["scan"]["obs"], np.full(6, 10), atol=1e-5)
+    np.testing.assert_allclose(drive.action, [10, 1.5], atol=1e-5)
+    with pytest.raises(gloam.UsageError, match="several networks"):
+        policy.infer(np.zeros(6))
 
 
 def test_other_names_in_the_model(sim: gloam.Simulation, tmp_path: Path) -> None:
@@ -181,7 +251,6 @@ def test_place(sim: gloam.Simulation, tmp_path: Path) -> None:
 
 
 def test_cameras_beside_a_policy(tmp_path: Path) -> None:
-    """The hook waits for Python on the thread that steps; those who wait for a picture must not hold Python."""
     scene = gloam.Scene(write_scene(tmp_path))
     scene.add("camera", name="cam", position=[2, 0, 1], look_at=[0, 0, 1], width=16, height=12, rate=50)
     scene.update({"render.tier": "direct", "render.spp": 1})
@@ -207,7 +276,7 @@ with gloam.load(sys.argv[1]) as sim:
 
 @pytest.mark.slow
 def test_background_runs_and_views_beside_a_policy(tmp_path: Path) -> None:
-    """In a process of its own: what waits for the thread that steps must not hold Python, which the hook waits for."""
+    """In a process of its own: calls that wait for the thread that steps must not hold the interpreter."""
     policy = held_policy(tmp_path)
     command = [sys.executable, "-c", BACKGROUND, str(write_scene(tmp_path)), str(policy.path), str(policy.settings)]
     assert subprocess.run(command, capture_output=True, text=True, timeout=120).stdout.strip() == "True"

@@ -30,6 +30,10 @@ class SimLoop {
           ControllerMaker make_controller = {});
 
   Status add_controller(int robot, std::unique_ptr<Controller> controller, Rational rate);
+  /// Of a robot; null = it has none.
+  const Controller* controller_of(int robot) const {
+    return controllers_[static_cast<size_t>(robot)].now.controller.get();
+  }
   /// The controller and the models of the actuators of a robot.
   Status add_robot(RobotController robot);
   /// Goes on in another World at the present step. `next` comes as it was made, with what belongs

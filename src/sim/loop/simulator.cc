@@ -251,6 +251,15 @@ Status Simulator::add_robot(RobotController robot) {
   return status;
 }
 
+Status Simulator::read_controller(Robot robot, const std::function<void(const Controller*)>& read) {
+  Status status;
+  look([&] {
+    status = check_command(loop_.stepper().world(), {.what = StopTrajectory{robot}});  // its handle
+    if (status.ok()) read(loop_.controller_of(robot.id));
+  });
+  return status;
+}
+
 Status Simulator::set_step_hook(StepHook hook) {
   if (is_on_sim_thread()) return no_call_from_a_step();
   look([&] { loop_.set_step_hook(std::move(hook)); });

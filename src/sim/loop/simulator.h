@@ -106,6 +106,9 @@ class Simulator {
   Status add_controller(int robot, std::unique_ptr<Controller> controller, Rational rate);
   /// The same for what a robot has of controller and models of its actuators.
   Status add_robot(RobotController robot);
+  /// Calls `read` between two steps with the present controller of a robot, null = it has none.
+  /// Error: a handle of another World.
+  Status read_controller(Robot robot, const std::function<void(const Controller*)>& read);
   /// Error: called by a step hook or controller.
   Status set_step_hook(StepHook hook);
   /// From now on what the step hook writes is kept there; null = no longer.

@@ -1,1 +1,0 @@
-"""Parts of gloam.policy: specification, observation and robot of a network."""
