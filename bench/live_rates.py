@@ -1,10 +1,12 @@
 """Rates at which the sensors of a live run come while one large camera renders beside them.
 
-    python3 tests/fetch_data.py; python3 bench/live_rates.py [--program FILE] [--seconds N] [--tier path] [--spp N] [--pace realtime]
+    python3 tests/fetch_data.py
+    python3 bench/live_rates.py [--place house] [--program FILE] [--seconds N] [--tier path] [--spp N] [--pace realtime]
 
-The demo's room with its quadruped: joint states, an IMU, a LiDAR of 16 rings at 10 Hz, a camera of 64x64 at 10 Hz, and then a camera
-of 640x480 at 10 Hz as well. Each phase is one live run whose topics a client of ZeroMQ counts, by simulation time; the program runs
-on two processors. Prints a table, with --json JSON. Another build's program (--program) gives the rates before a change.
+The demo's room, or a generated house, with a quadruped: joint states, an IMU, a LiDAR of 16 rings at 10 Hz, a camera of
+64x64 at 10 Hz, and then a camera of 640x480 at 10 Hz as well. Each phase is one live run whose topics a client of
+ZeroMQ counts, by simulation time; the program runs on two processors. Prints a table, with --json JSON. Another build's
+program (--program) gives the rates before a change.
 """
 import argparse
 import json
@@ -29,12 +31,11 @@ from gloam_zmq import Client  # noqa: E402
 SCENE = """
 [scene]
 name = "rates"
-[environment]
-file = "{assets}/environments/room/room.xml"
+{place}
 [[robot]]
 name = "quadruped"
 file = "{assets}/robots/quadruped/quadruped.xml"
-position = [-1.0, -0.5, 0]
+position = {start}
 keyframe = "home"
 [robot.controller]
 type = "trot"
@@ -47,8 +48,9 @@ preset = "VLP-16"
 columns = 900
 [[camera]]
 name = "small"
-position = [1.7, -1.8, 1.3]
-look_at = [0, 0, 0.3]
+track = "quadruped/trunk"
+position = [1.5, -0.75, 0.7]
+look_at = [0, 0, 0]
 width = 64
 height = 64
 rate = 10
@@ -63,6 +65,8 @@ rate = 10
 [bridge.zmq]
 port = 0
 """
+PLACES = {"room": ('[environment]\nfile = "{assets}/environments/room/room.xml"', [-1.0, -0.5, 0]),
+          "house": ("[environment]\nhouse = {{}}", [4, 1.5, 0])}  # in its living room
 
 
 def topics_of(sim, large):
@@ -105,7 +109,8 @@ def phase(options, folder, large):
     runtime = Path(folder) / ("large" if large else "small")
     runtime.mkdir(mode=0o700)
     scene = runtime / "rates.toml"
-    scene.write_text(SCENE.format(assets=ROOT / "assets"))
+    place, start = PLACES[options.place]
+    scene.write_text(SCENE.format(assets=ROOT / "assets", place=place.format(assets=ROOT / "assets"), start=start))
     command = [options.program, "run", str(scene), "--zmq", "--tier", options.tier, "--spp", str(options.spp), "--threads", "2", "--root", str(ROOT)]
     command += ["--pace", options.pace] if options.pace != "realtime" else []
     command = (["taskset", "-c", "0,1"] if os.cpu_count() > 2 else []) + command
@@ -133,6 +138,7 @@ def phase(options, folder, large):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--program", default=str(ROOT / "build" / "release" / "bin" / "gloam"))
+    parser.add_argument("--place", choices=PLACES, default="room")
     parser.add_argument("--seconds", type=float, default=10)
     parser.add_argument("--tier", default="path")
     parser.add_argument("--spp", type=int, default=4)
