@@ -19,7 +19,7 @@
 namespace gloam {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kUnlimited = std::numeric_limits<double>::infinity();
 constexpr double kCreep = 1;  // speed below which the friction of the motor falls to zero [rad/s]
 
 // Change over dt of a speed whose derivative is `rate` and falls by `decay` per speed [1/s]: exact
@@ -61,14 +61,14 @@ double friction_of(const ActuatorOptions& o, double w) {
 
 // Changes of the shaft's speed over dt that the voltage and current of the drive allow.
 struct ChangeRange {
-  double low = -kInfinity, high = kInfinity;  // [rad/s]
+  double low = -kUnlimited, high = kUnlimited;  // [rad/s]
 };
 
 ChangeRange change_range(const Rotor& rotor, const Drive& drive, double dt) {
   const ActuatorOptions& o = drive.options();
   const double k = o.torque_constant, w = rotor.speed, inertia = o.propeller->inertia;
   const bool is_off = drive.supply <= 0;
-  if (is_off && inertia == 0) return {-kInfinity, -kInfinity};
+  if (is_off && inertia == 0) return {-kUnlimited, -kUnlimited};
   if (!is_off && k == 0) return {};  // the motor is not modelled
   const double load = rotor.torque(w, drive.inflow) + friction_of(o, w);
   const double load_decay = 2 * rotor.torque_factor * w / inertia;  // [1/s]
@@ -158,12 +158,12 @@ Result<Rotor> make_rotor(const ActuatorParts& parts, size_t row) {
                  drive.options.loc,
                  "specify 'power_coefficient', or the reaction torque in the actuator's gear"};
   const double turn = o.diameter / (2 * pi);  // J = v / (w · turn)
-  rotor.zero_thrust_speed = o.zero_thrust_advance ? *o.zero_thrust_advance * turn : kInfinity;
-  rotor.zero_torque_speed = o.zero_torque_advance ? *o.zero_torque_advance * turn : kInfinity;
+  rotor.zero_thrust_speed = o.zero_thrust_advance ? *o.zero_thrust_advance * turn : kUnlimited;
+  rotor.zero_torque_speed = o.zero_torque_advance ? *o.zero_torque_advance * turn : kUnlimited;
   const auto& shared = parts.robot.actuators;
   rotor.nominal_voltage = shared && shared->battery ? nominal_voltage(*shared->battery) : o.voltage;
   const int a = drive.actuator;
-  rotor.highest = kInfinity;
+  rotor.highest = kUnlimited;
   if (m.actuator_ctrllimited[drive.ctrl])
     rotor.highest = m.actuator_gainprm[mjNGAIN * a] * m.actuator_ctrlrange[2 * drive.ctrl + 1] *
                     mju_norm3(gear);

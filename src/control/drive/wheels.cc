@@ -33,8 +33,6 @@ struct Candidate {
   bool is_wheel = false;  // its axis is parallel to the base's y axis
 };
 
-Vector3d vector(const mjtNum* p) { return {p[0], p[1], p[2]}; }
-
 // The largest radius of the body's geoms about the joint's axis.
 double radius_of(const mjModel& model, int body) {
   double radius = 0;
@@ -107,9 +105,9 @@ std::vector<Candidate> candidates_of(const mjModel& model, const RobotInstance& 
       continue;
     }
     Candidate row{joint_name(model, joint, robot), *wheel};
-    const Vector3d axis_B = R_WB.transpose() * vector(data->xaxis + 3 * joint);
-    row.y = (R_WB.transpose() * vector(data->xanchor + 3 * joint) -
-             R_WB.transpose() * vector(data->xpos + 3 * root))
+    const Vector3d axis_B = R_WB.transpose() * Vector3d(data->xaxis + 3 * joint);
+    row.y = (R_WB.transpose() * Vector3d(data->xanchor + 3 * joint) -
+             R_WB.transpose() * Vector3d(data->xpos + 3 * root))
                 .y();
     row.radius = radius_of(model, model.jnt_bodyid[joint]);
     row.is_wheel = std::abs(axis_B.y()) > kParallel;
@@ -119,7 +117,7 @@ std::vector<Candidate> candidates_of(const mjModel& model, const RobotInstance& 
   return all;
 }
 
-Error unsuited(const RobotInstance& robot, std::string_view reason, std::string hint) {
+Error unsuited_base(const RobotInstance& robot, std::string_view reason, std::string hint) {
   return Error{
       ErrorKind::kInput,
       fmt::format("controller 'diff_drive' cannot drive robot '{}': {}", robot.name, reason),
@@ -142,8 +140,8 @@ Result<std::vector<Candidate>> side_of(const std::vector<Candidate>& all,
     if (row == all.end()) {
       std::vector<std::string> known;
       for (const Candidate& one : all) known.push_back(one.name);
-      return unsuited(robot, fmt::format("it has no driven wheel '{}'", name),
-                      suggest_name(name, known));
+      return unsuited_base(robot, fmt::format("it has no driven wheel '{}'", name),
+                           suggest_name(name, known));
     }
     wheels.push_back(*row);
   }
@@ -164,10 +162,10 @@ Result<WheeledBase> find_wheels(const mjModel& model, const RobotInstance& robot
   GLOAM_TRY(const std::vector<Candidate> left, side_of(all, options.left, +1, robot));
   GLOAM_TRY(const std::vector<Candidate> right, side_of(all, options.right, -1, robot));
   if (left.empty() || right.empty()) {
-    return unsuited(robot,
-                    fmt::format("{} of its driven wheels are on the left, {} on the right",
-                                left.size(), right.size()),
-                    "set drive.left and drive.right to the names of the wheels' joints");
+    return unsuited_base(robot,
+                         fmt::format("{} of its driven wheels are on the left, {} on the right",
+                                     left.size(), right.size()),
+                         "set drive.left and drive.right to the names of the wheels' joints");
   }
   WheeledBase base;
   base.mass = model.body_subtreemass[robot.root_body];
@@ -175,12 +173,12 @@ Result<WheeledBase> find_wheels(const mjModel& model, const RobotInstance& robot
   if (base.radius == 0)
     base.radius = (mean(left, &Candidate::radius) + mean(right, &Candidate::radius)) / 2;
   if (!(base.radius > 0))
-    return unsuited(robot, "its wheels have no collision geoms", "set drive.wheel_radius");
+    return unsuited_base(robot, "its wheels have no collision geoms", "set drive.wheel_radius");
   base.track =
       options.track != 0 ? options.track : mean(left, &Candidate::y) - mean(right, &Candidate::y);
   if (!(base.track > 0)) {
-    return unsuited(robot, "its left wheels are not to the left of its right wheels",
-                    "set drive.track");
+    return unsuited_base(robot, "its left wheels are not to the left of its right wheels",
+                         "set drive.track");
   }
   for (const Candidate& row : left) base.left.push_back(row.wheel);
   for (const Candidate& row : right) base.right.push_back(row.wheel);

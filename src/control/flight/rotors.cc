@@ -17,7 +17,6 @@ using RowMatrix3d = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
 
 constexpr double kSmallestSingularValue = 1e-6;  // of the effectiveness, relative to the largest
 
-Vector3d vector(const mjtNum* p) { return {p[0], p[1], p[2]}; }
 Matrix3d matrix(const mjtNum* p) { return Eigen::Map<const RowMatrix3d>(p); }
 
 // A thrust at a site: one control, a constant gain, and perhaps the lag of a motor.
@@ -63,14 +62,14 @@ Error unsuited(const RobotInstance& robot, std::string_view reason, std::string 
 // Mass and inertia about the centre of mass of everything that hangs on the base.
 void add_up(const mjModel& model, const mjData& data, int root, Multirotor* out) {
   const Matrix3d R_WB = matrix(data.xmat + 9 * root);
-  const Vector3d com_W = vector(data.subtree_com + 3 * root);
+  const Vector3d com_W = Vector3d(data.subtree_com + 3 * root);
   Matrix3d inertia_W = Matrix3d::Zero();
   for (int body = root; body < model.nbody; ++body) {
     if (!is_part_of(model, body, root)) continue;
     const double mass = model.body_mass[body];
     const Matrix3d R = matrix(data.ximat + 9 * body);
-    const Vector3d r = vector(data.xipos + 3 * body) - com_W;
-    inertia_W += R * vector(model.body_inertia + 3 * body).asDiagonal() * R.transpose() +
+    const Vector3d r = Vector3d(data.xipos + 3 * body) - com_W;
+    inertia_W += R * Vector3d(model.body_inertia + 3 * body).asDiagonal() * R.transpose() +
                  mass * (r.squaredNorm() * Matrix3d::Identity() - r * r.transpose());
     out->mass += mass;
   }
@@ -94,16 +93,16 @@ Result<Multirotor> find_multirotor(const mjModel& model, const RobotInstance& ro
   out.dof = model.jnt_dofadr[joint];
   add_up(model, *data, root, &out);
   const Matrix3d R_WB = matrix(data->xmat + 9 * root);
-  const Vector3d com_W = vector(data->subtree_com + 3 * root);
+  const Vector3d com_W = Vector3d(data->subtree_com + 3 * root);
   std::vector<Eigen::Vector4d> columns;
   for (int actuator = 0; actuator < model.nactuator; ++actuator) {
     if (!is_rotor(model, actuator, root)) continue;
     const int site = model.actuator_trnid[2 * actuator];
     const mjtNum* gear = model.actuator_gear + 6 * model.actuator_outadr[actuator];
     const Matrix3d R_WS = matrix(data->site_xmat + 9 * site);
-    const Vector3d force_W = R_WS * vector(gear);
-    const Vector3d arm_W = vector(data->site_xpos + 3 * site) - com_W;
-    const Vector3d torque_B = R_WB.transpose() * (R_WS * vector(gear + 3) + arm_W.cross(force_W));
+    const Vector3d force_W = R_WS * Vector3d(gear);
+    const Vector3d arm_W = Vector3d(data->site_xpos + 3 * site) - com_W;
+    const Vector3d torque_B = R_WB.transpose() * (R_WS * Vector3d(gear + 3) + arm_W.cross(force_W));
     columns.emplace_back((R_WB.transpose() * force_W).z(), torque_B.x(), torque_B.y(),
                          torque_B.z());
     out.rotors.push_back(rotor_of(model, actuator));
