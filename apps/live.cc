@@ -29,9 +29,15 @@ struct LiveParts {
   std::unique_ptr<Teleop> teleop;
 };
 
+void tell_help(const Teleop& teleop) {
+  for (const std::string& line : teleop.help()) tell("{}\n", line);
+}
+
 void show_teleop(Teleop& teleop, const Simulation& simulation, StatusLine* line) {
   const std::vector<std::string> notices = teleop.take_notices();
-  if (!notices.empty()) line->clear();
+  const bool shows_help = teleop.take_help_request();
+  if (shows_help || !notices.empty()) line->clear();
+  if (shows_help) tell_help(teleop);
   for (const std::string& notice : notices) tell("gloam: {}\n", notice);
   line->show(fmt::format("{}  {:.2f}x real time{}", teleop.status(),
                          simulation.stats().realtime_factor,
@@ -126,7 +132,7 @@ Result<LiveParts> start_parts(LiveRun& run, const LiveCommand& command) {
   }
   if (run.teleop) {
     GLOAM_TRY(parts.teleop, Teleop::start(simulation, *run.teleop));
-    tell("gloam: {}\n", parts.teleop->help());
+    tell_help(*parts.teleop);
   }
   return parts;
 }

@@ -12,7 +12,11 @@
 namespace gloam::cli {
 namespace {
 
-bool is_foreground() { return ::tcgetpgrp(STDERR_FILENO) == ::getpgrp(); }
+// A terminal that is not the controlling one (-1) has no background.
+bool is_foreground() {
+  const pid_t group = ::tcgetpgrp(STDERR_FILENO);
+  return group == ::getpgrp() || group < 0;
+}
 
 size_t terminal_width() {
   winsize size = {};

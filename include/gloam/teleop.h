@@ -30,10 +30,12 @@ class Teleop {
   /// Stops the robot and restores the terminal.
   virtual ~Teleop() = default;
 
-  virtual std::string help() const = 0;  ///< table of keys, several lines
+  virtual std::vector<std::string> help() const = 0;  ///< lines of a table of keys
+  /// Whether the user has requested it since the last call, or the keys have changed.
+  virtual bool take_help_request() = 0;
   /// Goal, speed and devices at this moment, one line; the most important part first.
   virtual std::string status() const = 0;
-  /// Messages since the last call: the help on request, gamepads that come and go, rejected goals.
+  /// Messages since the last call: gamepads that come and go, rejected goals.
   virtual std::vector<std::string> take_notices() = 0;
   virtual bool end_asked() const = 0;  ///< the user has pressed Esc
 };

@@ -96,7 +96,7 @@ Deflection GamepadEvents::sticks() const {
                  .up = along(kRightY),
                  .turn = along(kRightX),
                  .roll = -along(kPadX),
-                 .pitch = along(kPadY)};
+                 .pitch = -along(kPadY)};
   return sum;
 }
 

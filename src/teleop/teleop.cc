@@ -45,10 +45,11 @@ class TeleopLoop final : public Teleop {
     ::close(wake_);
   }
 
-  std::string help() const override {
+  std::vector<std::string> help() const override {
     const std::lock_guard lock(mutex_);
     return help_;
   }
+  bool take_help_request() override { return help_asked_.exchange(false); }
   std::string status() const override {
     const std::lock_guard lock(mutex_);
     return status_;
@@ -135,14 +136,14 @@ class TeleopLoop final : public Teleop {
         return driver_->set_gripper(request == Request::kGripperOpen, now);
       case Request::kSwitchGoal:
         keys_.release_all();
-        if (driver_->switch_goal(now)) notify(make_help());
+        if (driver_->switch_goal(now)) help_asked_ = true;
         return {};
       case Request::kFaster:
       case Request::kSlower:
         driver_->set_speed(driver_->speed() + (request == Request::kFaster ? 1 : -1));
         return {};
       case Request::kHelp:
-        notify(make_help());
+        help_asked_ = true;
         return {};
       case Request::kEnd:
         end_asked_ = true;
@@ -162,10 +163,6 @@ class TeleopLoop final : public Teleop {
     return driver_->steer(move, now);
   }
 
-  std::string make_help() const {
-    return help_text(driver_->robot(), driver_->goals(), driver_->moves_frame());
-  }
-
   void notify(std::string notice) {
     const std::lock_guard lock(mutex_);
     notices_.push_back(std::move(notice));
@@ -183,7 +180,7 @@ class TeleopLoop final : public Teleop {
     std::string status =
         fmt::format("{}: {}  speed {}", driver_->robot(), driver_->goal_text(), driver_->speed());
     if (gamepad_->is_alive()) status += "  gamepad";
-    std::string help = make_help();
+    auto help = help_lines(driver_->robot(), driver_->goals(), driver_->moves_frame());
     const std::lock_guard lock(mutex_);
     status_ = std::move(status);
     help_ = std::move(help);
@@ -202,9 +199,9 @@ class TeleopLoop final : public Teleop {
   Time failed_at_;
 
   mutable std::mutex mutex_;
-  std::string help_, status_;
-  std::vector<std::string> notices_;
-  std::atomic<bool> end_asked_ = false, is_stopping_ = false;
+  std::string status_;
+  std::vector<std::string> help_, notices_;
+  std::atomic<bool> help_asked_ = false, end_asked_ = false, is_stopping_ = false;
   const int wake_;
   std::thread thread_;
 };

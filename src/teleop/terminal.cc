@@ -29,7 +29,11 @@ constexpr std::array kFatalSignals = {SIGSEGV, SIGBUS, SIGILL, SIGFPE, SIGABRT, 
 std::array<struct sigaction, kFatalSignals.size()> former_fatal;
 struct sigaction former_stop;
 
-bool is_foreground(int descriptor) { return ::tcgetpgrp(descriptor) == ::getpgrp(); }
+// A terminal that is not the controlling one (-1) has no background.
+bool is_foreground(int descriptor) {
+  const pid_t group = ::tcgetpgrp(descriptor);
+  return group == ::getpgrp() || group < 0;
+}
 
 void on_fatal(int signal) {
   restore_terminal();
@@ -108,7 +112,10 @@ Terminal::~Terminal() {
 bool Terminal::is_ready() {
   if (is_lost_ || saved.is_stopping || !is_foreground(descriptor_)) return false;
   termios mode = {};
-  if (::tcgetattr(descriptor_, &mode) != 0) return false;
+  if (::tcgetattr(descriptor_, &mode) != 0) {  // it has been closed
+    is_lost_ = true;
+    return false;
+  }
   // Shells restore their own mode, also after a SIGSTOP, of which the process is not notified.
   if (saved.is_switched && (mode.c_lflag & ICANON) == 0) return true;
   saved.before = mode;

@@ -24,9 +24,9 @@ class Terminal {
   /// terminal again after the process was suspended.
   bool is_ready();
   int descriptor() const { return descriptor_; }
-  /// Returns the bytes that have arrived. Sets is_lost() at the end of the input.
+  /// Returns the bytes that have arrived.
   std::vector<unsigned char> read();
-  bool is_lost() const { return is_lost_; }
+  bool is_lost() const { return is_lost_; }  ///< the terminal has been closed
 
  private:
   explicit Terminal(int descriptor) : descriptor_(descriptor) {}
