@@ -378,6 +378,7 @@ class Simulation:
                 if self._log is not None:
                     self._log.finish()
                 self._core.close()
+            self._drives.clear()
         finally:
             if self._other is not None:
                 self._other.close()

@@ -117,7 +117,7 @@ class MetadataReader {
     const auto clips = entries("observation_terms_clip", names.size());
     const auto lengths = entries("observation_terms_history_length", names.size());
     const std::string* flat = find("observation_terms_flatten_history_dim");
-    const auto flags = split(flat != nullptr ? *flat : "", ',');
+    const auto flags = split(flat != nullptr ? std::string_view(*flat) : "", ',');
     toml::array terms;
     for (size_t i = 0; status_.ok() && i < names.size(); ++i) {
       toml::table term{{"term", std::string(names[i])}};

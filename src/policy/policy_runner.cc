@@ -65,6 +65,9 @@ bool PolicyRunner::take_over(const PolicyRunner& other) {
   if (shape(*this) != shape(other) || policy_->spec.joints != other.policy_->spec.joints)
     return false;
   for (size_t i = 0; i < observers_.size(); ++i) observers_[i].take_over(other.observers_[i]);
+  for (size_t i = 0; i < networks_.size(); ++i)
+    for (size_t k = 0; k < networks_[i]->inputs().size(); ++k)
+      std::ranges::copy(other.observation(i, k), networks_[i]->input(k).begin());
   outputs_ = other.outputs_;
   clock_ = other.clock_;
   period_ = other.period_;

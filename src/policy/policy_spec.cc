@@ -39,7 +39,7 @@ void require(const toml::table& policy, bool has_observation, Settings* settings
     missing += std::string(missing.empty() ? "" : " and ") + "[[observation]] terms";
   if (!missing.empty())
     settings->fail(nullptr, "the network's metadata does not contain " + missing,
-                   "write them to a TOML file beside the network: docs/policies.md");
+                   "write them to a TOML file, the policy's settings: docs/policies.md");
 }
 
 void read_joint_values(const toml::table& policy, Settings* s, PolicySpec* spec) {
@@ -153,7 +153,7 @@ Result<toml::table> merge_settings(const toml::table& base, toml::table over,
                                    const std::string& file) {
   Settings s(file);
   constexpr std::string_view kKeys[] = {"policy", "observation", "network"};
-  s.check_keys(over, kKeys, "a policy's settings");
+  s.check_keys(over, kKeys, "a policy's TOML");
   if (const toml::table* known = base["policy"].as_table()) {
     s.table(over, "policy");
     if (!s.ok()) return s.status().error();

@@ -170,7 +170,7 @@ def test_two_robots_by_one_policy_and_detach(tmp_path: Path) -> None:
 
 def test_detach_returns_to_the_controller_of_the_scene(tmp_path: Path) -> None:
     path = write_scene(tmp_path)
-    path.write_text(path.read_text() + '[robot.controller]\ntype = "torque"\ntarget = [0.25, 0.5]\n')
+    path.write_text(path.read_text() + '[robot.controller]\ntype = "torque"\nrate = 200\ntarget = [0.25, 0.5]\n')
     with gloam.load(path) as sim:
         drive = held_policy(tmp_path).attach(sim, "bot")
         sim.step(8)
@@ -184,7 +184,7 @@ def test_detach_returns_to_the_controller_of_the_scene(tmp_path: Path) -> None:
 def test_another_controller_replaces_the_policy(sim: gloam.Simulation, tmp_path: Path) -> None:
     drive = held_policy(tmp_path).attach(sim, "bot")
     sim.step()
-    sim.robots["bot"].set_controller("torque")
+    sim.robots["bot"].set_controller("torque", rate=200)
     sim.step()
     assert not drive.is_active and sim.robots["bot"].controls.tolist() == [0, 0]
 
@@ -199,7 +199,7 @@ def test_the_step_hook_is_free_and_sees_the_policy(sim: gloam.Simulation, tmp_pa
 
 def test_terms_and_networks_of_scenes_work_from_python(sim: gloam.Simulation, tmp_path: Path) -> None:
     """A chain of two networks, a gait clock, a height scan and a recurrent state."""
-    write_network(tmp_path / "scan.onnx", np.full((1, 6), 1 / 6), name="height")
+    write_network(tmp_path / "scan.onnx", np.full((1, 6), 1 / 6))
     write_network(tmp_path / "body.onnx", np.array([[0, 0, 0, 0, 1, 0], [0, 0, 0, 0, 0, 0.5]]), np.array([0, 1]))
     text = POLICY + "[policy.gait]\nfrequency = 2.0\n"
     text += '[[network]]\nname = "scan"\nfile = "scan.onnx"\n[[network.observation]]\nterm = "height_scan"\n'
@@ -213,11 +213,13 @@ def test_terms_and_networks_of_scenes_work_from_python(sim: gloam.Simulation, tm
         ("gait_clock", 4, ""), ("network_output", 1, "scan"), ("network_output", 1, "body"),
     ]
     drive = policy.attach(sim, "bot")
-    sim.step(5)
+    sim.step(4)
+    height = sim.robots["bot"].pose.p[2]  # above the plane z = 0
+    sim.step()
     clock = np.sin(2 * np.pi * 2 * 2.0 / 50 + np.pi * np.array([1, 0, 0, 1]))
-    np.testing.assert_allclose(drive.observation, [*clock, 10, 1], atol=1e-5)  # there is no ground: the range of 10 m
-    np.testing.assert_allclose(drive.inputs["scan"]["obs"], np.full(6, 10), atol=1e-5)
-    np.testing.assert_allclose(drive.action, [10, 1.5], atol=1e-5)
+    np.testing.assert_allclose(drive.observation, [*clock, height, 1], atol=1e-5)
+    np.testing.assert_allclose(drive.inputs["scan"]["obs"], np.full(6, height), atol=1e-5)
+    np.testing.assert_allclose(drive.action, [height, 1.5], atol=1e-5)
     with pytest.raises(gloam.UsageError, match="several networks"):
         policy.infer(np.zeros(6))
 

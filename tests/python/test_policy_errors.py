@@ -44,7 +44,7 @@ def test_names_that_the_robot_has_not(tmp_path: Path) -> None:
             held_policy(tmp_path).attach(sim, "bt")
         with pytest.raises(TypeError, match="expected a robot or its name, got None"):
             held_policy(tmp_path).attach(sim, None)  # type: ignore[arg-type]
-        with pytest.raises(gloam.NotFoundError, match="has no sensor bot/giro.*did you mean 'bot/gyro'"):
+        with pytest.raises(gloam.InputError, match="has no sensor bot/giro.*did you mean 'bot/gyro'"):
             held_policy(tmp_path, '[[observation]]\nterm = "base_ang_vel"\nsensor = "giro"\n', 3).attach(sim, "bot")
         with pytest.raises(gloam.UnsupportedError, match="'gyro' has 3 numbers"):
             held_policy(tmp_path, '[[observation]]\nterm = "joint_pos"\nsensor = "gyro"\n', 2).attach(sim, "bot")
@@ -82,14 +82,22 @@ def test_a_rate_that_no_number_of_steps_gives(tmp_path: Path) -> None:
         held_policy(tmp_path).attach(sim, "bot")
 
 
-def test_outputs_that_are_no_numbers_stop_the_run_in_words(sim: gloam.Simulation, tmp_path: Path) -> None:
+def test_an_action_that_is_not_finite_damps_the_joints(sim: gloam.Simulation, tmp_path: Path) -> None:
     weights = np.zeros((2, 7))
     weights[1, 4] = 3e38  # of vx
     drive = Policy(write_network(tmp_path / "p.onnx", weights), write_settings(tmp_path)).attach(sim, "bot")
     sim.step(10)
+    assert drive.fault == ""
     drive.command(vx=100)
-    with pytest.raises(gloam.DivergedError, match="action for 'hip' is not finite, its observation is finite"):
-        sim.step(10)
+    sim.step(3)
+    assert "action for 'hip' is not finite, its observation is finite" in drive.fault
+    velocity = sim.joints["bot/hip"].velocity
+    sim.step()
+    assert sim.memory.array("actuator_force")[0] == pytest.approx(-0.5 * velocity)
+    drive.command()
+    drive.reset()
+    sim.step(4)
+    assert drive.fault == ""
 
 
 def test_closed_simulations(tmp_path: Path) -> None:

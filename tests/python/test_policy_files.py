@@ -65,6 +65,11 @@ def test_holosoma_alone_tells_what_is_missing() -> None:
         Policy(_data().holosoma / "loco" / "g1_29dof" / "ppo_g1_29dof.onnx")
 
 
-def test_motion_tracking_of_holosoma_is_refused_by_name() -> None:
-    with pytest.raises(gloam.UnsupportedError, match="obs, time_step"):
-        Policy(_data().holosoma / "wbt" / "ppo_g1_29dof_dancing.onnx")
+def test_motion_tracking_of_holosoma_needs_its_toml() -> None:
+    network = _data().holosoma / "wbt" / "ppo_g1_29dof_dancing.onnx"
+    with pytest.raises(gloam.InputError, match=r"\[\[observation\]\] terms"):
+        Policy(network)
+    policy = Policy(network, Path(__file__).resolve().parents[2] / "examples" / "python" / "g1_dance.toml")
+    assert set(policy.spec.networks[0].inputs) == {"obs", "time_step"}
+    with pytest.raises(gloam.UsageError, match="several networks or inputs"):
+        policy.infer(np.zeros(policy.spec.observation_size))

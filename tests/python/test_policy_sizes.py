@@ -12,9 +12,11 @@ import pytest
 
 pytest.importorskip("openvino")
 onnx = pytest.importorskip("onnx")
-from gloam._policy.network import Network  # noqa: E402
 from gloam.errors import Error, InputError, UnsupportedError  # noqa: E402
+from gloam.policy import Policy  # noqa: E402
 from onnx import TensorProto, helper, numpy_helper  # noqa: E402
+
+from policy_fixtures import POLICY, write_settings  # noqa: E402
 
 HUGE = 1 << 40
 
@@ -28,6 +30,11 @@ def save(path: Path, nodes: Sequence[Any], tensors: Sequence[Any] = (), width: i
     model.ir_version = 8
     path.write_bytes(model.SerializeToString())
     return path
+
+
+def load(path: Path) -> Policy:
+    term = '[[observation]]\nterm = "last_action"\nhistory = 2\n'
+    return Policy(path, write_settings(path.parent, POLICY + term))
 
 
 def weights() -> Any:
@@ -119,7 +126,7 @@ def test_bombs_are_refused_before_memory_is_taken(tmp_path: Path, write: Callabl
     assert path.stat().st_size < 1 << 16
     before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
     with pytest.raises(InputError, match=says) as caught:
-        Network(path)
+        load(path)
     assert str(path) in str(caught.value)
     grown = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before  # [KiB]
     assert grown < 200 << 10
@@ -130,7 +137,7 @@ def test_loops_are_refused(tmp_path: Path) -> None:
     body = helper.make_graph([], "body", [], [out])
     path = save(tmp_path / "p.onnx", [helper.make_node("Loop", ["n", "c"], ["z"], body=body), LAST], [weights()])
     with pytest.raises(UnsupportedError, match="has a Loop"):
-        Network(path)
+        load(path)
 
 
 def test_weights_outside_of_the_folder_are_refused(tmp_path: Path) -> None:
@@ -143,7 +150,7 @@ def test_weights_outside_of_the_folder_are_refused(tmp_path: Path) -> None:
         entry = tensor.external_data.add()
         entry.key, entry.value = "location", location
         with pytest.raises(InputError, match="outside the network's folder"):
-            Network(save(folder / "p.onnx", [LAST], [tensor]))
+            load(save(folder / "p.onnx", [LAST], [tensor]))
 
 
 def test_damaged_files_are_refused(tmp_path: Path) -> None:
@@ -152,7 +159,7 @@ def test_damaged_files_are_refused(tmp_path: Path) -> None:
         path = tmp_path / "cut.onnx"
         path.write_bytes(whole[:cut])
         with pytest.raises(Error):
-            Network(path)
+            load(path)
 
 
 def test_networks_of_a_usual_size_are_taken(tmp_path: Path) -> None:
@@ -164,9 +171,9 @@ def test_networks_of_a_usual_size_are_taken(tmp_path: Path) -> None:
         out = "actions" if i == len(sizes) - 2 else f"h{i}"
         nodes.append(helper.make_node("MatMul", [last, f"w{i}"], [out]))
         last = out
-    network = Network(save(tmp_path / "p.onnx", nodes, tensors))
-    assert (network.inputs, network.outputs) == (4, 2)
+    policy = load(save(tmp_path / "p.onnx", nodes, tensors))
+    assert policy.spec.networks[0].inputs == {"obs": 4} and policy.spec.networks[0].outputs == {"actions": 2}
     expected = np.ones(4, np.float32)
     for tensor in tensors:
         expected = expected @ numpy_helper.to_array(tensor)
-    assert network.run(np.ones(4, np.float32)) == pytest.approx(expected, rel=1e-4)
+    assert policy.infer(np.ones(4, np.float32)) == pytest.approx(expected, rel=1e-4)

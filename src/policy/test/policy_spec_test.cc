@@ -96,6 +96,20 @@ TEST(PolicySpec, MetadataOfMjlab) {
   EXPECT_EQ(parts[2].kind->name, "velocity_commands");
 }
 
+TEST(PolicySpec, HistoriesOfMjlabMustBeFlat) {
+  for (const auto& [flags, is_flat] : {std::pair{"1.000,1.000", true},
+                                       {"1.000,0.000", false},
+                                       {"0.000,1.000", true},  // without a history it has no effect
+                                       {"1.000", false}}) {
+    const auto settings = settings_of_metadata({{"joint_names", "a"},
+                                                {"observation_names", "joint_pos,joint_vel"},
+                                                {"observation_terms_history_length", "0.0,3.0"},
+                                                {"observation_terms_flatten_history_dim", flags}},
+                                               "x.onnx");
+    EXPECT_EQ(settings.ok(), is_flat) << flags;
+  }
+}
+
 TEST(PolicySpec, MetadataOfHolosomaAndItsToml) {
   const auto metadata = settings_of_metadata({{"dof_names", R"(["a", "b"])"},
                                               {"kp", "[1, 2.5]"},
