@@ -75,7 +75,7 @@ class Controller {
   /// Returns a copy that continues exactly as this controller would. Null: it cannot be copied;
   /// checkpoints are then restored by stepping the run again.
   virtual std::unique_ptr<Controller> clone() const { return nullptr; }
-  /// The robot's own controller where this one calls it beside those of the robot's parts; null =
+  /// Returns the controller of the robot itself if this one also calls controllers of parts. Null:
   /// only parts have controllers.
   virtual const Controller* own() const { return this; }
 };

@@ -1,11 +1,11 @@
-// gloam/policy.h, without running simulations: runtime/policy_state.cc.
+// gloam/joints/policy.h, without running simulations: runtime/policy_state.cc.
 
 #include <fmt/format.h>
 
 #include <cmath>
 #include <sstream>
 
-#include "gloam/policy.h"
+#include "gloam/joints/policy.h"
 #include "policy/opened_policies.h"
 
 namespace gloam {

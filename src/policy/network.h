@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "gloam/policy.h"
+#include "gloam/joints/policy.h"
 #include "gloam/result.h"
 
 namespace gloam {

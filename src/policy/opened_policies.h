@@ -1,7 +1,7 @@
 #pragma once
 // Policies that the program itself has read (LoadedPolicy::load). Controllers may use them wherever
 // their files are, whereas paths from scenes and from clients of bridges must not leave the scene's
-// folder.
+// root (docs/security.md).
 
 #include <filesystem>
 #include <memory>

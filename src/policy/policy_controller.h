@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "gloam/controller.h"
-#include "gloam/policy.h"
+#include "gloam/joints/policy.h"
 #include "policy/network.h"
 #include "world/world.h"
 

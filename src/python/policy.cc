@@ -1,6 +1,6 @@
 // Policies: gloam.policy.
 
-#include "gloam/policy.h"
+#include "gloam/joints/policy.h"
 
 #include "core.h"
 #include "gloam/controller.h"
@@ -96,17 +96,23 @@ void post_all(Run& run, std::span<const Command> commands, ControlLease* lease) 
       [&] { return lease != nullptr ? lease->post(commands) : simulation.post(commands); }));
 }
 
+ControllerOptions controller_of_scene(Run& run, Robot robot) {
+  Simulation& simulation = run.simulation();
+  const World world = without_gil([&] { return simulation.world(); });
+  return take(scene_controller(world, robot));
+}
+
 // From the beginning: a policy of the same shape would take over the past of the one before it.
 void start(const LoadedPolicy& policy, Run& run, Robot robot, ControlLease* lease) {
-  const Command commands[] = {{.what = SetController{robot, {}}},
+  ControllerOptions none;
+  none.rate = controller_of_scene(run, robot).rate;  // of the robot's parts, too
+  const Command commands[] = {{.what = SetController{robot, std::move(none)}},
                               {.what = SetController{robot, policy.controller()}}};
   post_all(run, commands, lease);
 }
 
 void give_back(Run& run, Robot robot, ControlLease* lease) {
-  Simulation& simulation = run.simulation();
-  const World world = without_gil([&] { return simulation.world(); });
-  const Command command{.what = SetController{robot, take(scene_controller(world, robot))}};
+  const Command command{.what = SetController{robot, controller_of_scene(run, robot)}};
   post_all(run, std::span(&command, 1), lease);
 }
 

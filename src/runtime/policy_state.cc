@@ -1,4 +1,4 @@
-#include "gloam/policy.h"
+#include "gloam/joints/policy.h"
 #include "policy/policy_controller.h"
 #include "runtime/live_simulation.h"
 

@@ -16,7 +16,7 @@ pytest.importorskip("onnx")
 import gloam  # noqa: E402
 from gloam.policy import Policy, PolicyDriver  # noqa: E402
 
-from policy_fixtures import HELD, OBSERVATION, POLICY, Seen, held_policy, write_network, write_scene, write_settings  # noqa: E402
+from policy_fixtures import HELD, MOTORS, OBSERVATION, POLICY, held_policy, write_network, write_scene, write_settings  # noqa: E402
 
 KP, KD, DEFAULTS = np.array([10.0, 20.0]), 0.5, np.array([0.3, -0.2])  # of knee, hip
 
@@ -297,3 +297,72 @@ def test_policies_can_be_sent(tmp_path: Path) -> None:
     policy = held_policy(tmp_path)
     again = pickle.loads(pickle.dumps(policy))
     np.testing.assert_array_equal(again.infer(np.ones(7)), policy.infer(np.ones(7)))
+
+
+def elsewhere(tmp_path: Path) -> tuple[Path, Path]:
+    """A folder of policies, and a folder of scenes whose root does not contain it: a root is at most four levels up."""
+    policies, scenes = tmp_path / "policies", tmp_path / "1/2/3/4/5"
+    for folder in (policies, scenes):
+        folder.mkdir(parents=True)
+    return policies, scenes
+
+
+def test_policies_may_be_outside_of_the_root_of_the_scene(tmp_path: Path) -> None:
+    policies, scenes = elsewhere(tmp_path)
+    held_policy(policies).path.rename(policies / "other.onnx")
+    policy = held_policy(policies)
+    with gloam.load(write_scene(scenes)) as sim:
+        with pytest.raises(gloam.InputError, match="other.onnx' lies outside"):
+            settings = str(policies / "policy.toml")
+            sim.robots["bot"].set_controller("policy", network=str(policies / "other.onnx"), settings=settings)
+        drive = policy.attach(sim, "bot")
+        sim.step()
+        scene = sim.scene
+        scene.add("robot", name="another", file="leg.xml", position=[2, 0, 0])
+        sim.recompile(scene)
+        sim.step()
+        assert drive.is_active
+
+
+def test_a_run_is_repeated_with_a_policy_that_was_released(tmp_path: Path) -> None:
+    """Gas cannot be copied: the checkpoint is restored by stepping the run again, which makes its controllers again."""
+    policies, scenes = elsewhere(tmp_path)
+    scene = gloam.Scene(write_scene(scenes))
+    scene.add("gas", name="lab", position=[0, 0, 1], size=[1, 1, 1], voxel=0.25, medium="smoke")
+    with gloam.load(scene) as sim:
+        with held_policy(policies).attach(sim, "bot"):
+            sim.step(10)
+        sim.step(10)
+        there = sim.checkpoint()
+        assert not there._checkpoint.is_copied
+        sim.step(10)
+        expected = sim.hash
+        sim.restore(there)
+        sim.step(10)
+        assert sim.hash == expected
+
+
+def test_a_robot_with_a_gripper_of_its_own_controller(tmp_path: Path) -> None:
+    path = write_scene(tmp_path, MOTORS + '<motor name="m_grip" joint="grip"/>')
+    model = tmp_path / "leg.xml"
+    finger = '<body pos=".15 0 0"><joint name="grip" type="slide" axis="0 1 0" damping="1"/><geom size=".02" mass=".1"/></body>'
+    model.write_text(model.read_text().replace('<site name="imu"/>', '<site name="imu"/>' + finger))
+    path.write_text(path.read_text() + '[robot.controller]\nrate = 200\n[[robot.part]]\nname = "gripper"\njoints = ["grip"]\n'
+                    '[robot.part.controller]\ntype = "joint_position"\nrate = 100\nkp = 50\nkd = 5\n')
+    with gloam.load(path) as sim:
+        drive = held_policy(tmp_path).attach(sim, "bot")
+        sim.robots["bot"].command_joints(position=[0.03], joints=["grip"])
+        sim.run_until(time=3)
+        assert drive.is_active and drive.action.tolist() == HELD.tolist()
+        assert sim.joints["bot/grip"].position == pytest.approx(0.03, abs=1e-3)
+        np.testing.assert_allclose(joint_state(sim)[0], DEFAULTS + 0.5 * HELD, atol=1e-3)
+
+
+def test_the_robot_of_a_bare_model(tmp_path: Path) -> None:
+    write_scene(tmp_path)
+    with gloam.load(tmp_path / "leg.xml") as sim:
+        (name,) = sim.robots
+        drive = held_policy(tmp_path).attach(sim, name)
+        sim.step(200)
+        np.testing.assert_allclose(drive.targets, DEFAULTS + 0.5 * HELD, atol=1e-7)
+        assert abs(sim.joints["hip"].position - drive.targets[1]) < 0.05

@@ -84,7 +84,7 @@ class LoadedPolicy {
   /// `network`: an ONNX file; may be empty if `settings`, a TOML file, names all networks.
   /// `settings` may be empty if the network's metadata suffices. From now on controllers of this
   /// process may read these two files and, beside the settings, the networks that they name, also
-  /// outside of the scene's folder. Errors: a file that does not exist or is malformed, with its
+  /// outside of the scene's root. Errors: a file that does not exist or is malformed, with its
   /// line; terms that do not fill a network's inputs; OpenVINO is not installed.
   static Result<LoadedPolicy> load(const std::filesystem::path& network,
                                    const std::filesystem::path& settings = {});
