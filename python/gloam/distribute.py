@@ -112,7 +112,8 @@ def _drive_print(drive: Any) -> dict[str, str]:
     from .policy import Policy
 
     if isinstance(drive, Policy):
-        return {"policy": _content(drive.path), "policy_settings": _content(drive.settings) if drive.settings else ""}
+        files = {"policy": drive.path, "policy_settings": drive.settings}
+        return {key: _content(file) if file else "" for key, file in files.items()}
     if not callable(drive):
         raise TypeError(f"expected a gloam.Policy or a function (sim, seed, folder), got a {type(drive).__name__}")
     try:

@@ -16,7 +16,7 @@ import weakref
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -145,8 +145,10 @@ class Policy:
         array = np.asarray(observation, dtype=np.float32)
         if array.ndim not in (1, 2) or array.shape[-1] != self.spec.observation_size:
             raise UsageError(f"expected an observation of {self.spec.observation_size} numbers, got shape {array.shape}")
-        rows = [self._loaded.infer(row) for row in np.atleast_2d(array)]
-        return rows[0] if array.ndim == 1 else np.reshape(rows, (len(rows), len(self.spec.joints)))
+        rows = [cast(Array, self._loaded.infer(row)) for row in np.atleast_2d(array)]
+        if array.ndim == 1:
+            return rows[0]
+        return np.stack(rows) if rows else np.zeros((0, len(self.spec.joints)))
 
     def attach(self, sim: Simulation, robot: Robot | str) -> PolicyDriver:
         """Makes the policy the controller of a robot from the next step on.
@@ -205,7 +207,7 @@ class PolicyDriver:
 
     def _state(self) -> dict[str, Any] | None:
         robot = self._element()
-        state: dict[str, Any] | None = _core.policy_state(robot._sim._core, robot._now())
+        state = cast(dict[str, Any] | None, _core.policy_state(robot._sim._core, robot._now()))
         loaded = self.policy._loaded
         if state is None or (state["network"], state["settings"]) != (loaded.network, loaded.settings):
             return None
