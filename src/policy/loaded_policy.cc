@@ -2,8 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <sstream>
+#include <system_error>
 
 #include "gloam/joints/policy.h"
 #include "policy/opened_policies.h"
@@ -59,7 +61,9 @@ std::vector<std::string> words_of(std::string_view text) {
 }
 
 fs::path full_path(const fs::path& path) {
-  return path.empty() ? path : fs::absolute(path).lexically_normal();
+  std::error_code code;
+  const fs::path full = path.empty() ? path : fs::absolute(path, code);
+  return (code ? path : full).lexically_normal();
 }
 
 }  // namespace
