@@ -530,14 +530,17 @@ def inverse_kinematics(quick):
 
 
 def flight(quick):
-    """the quadrotor's controller: a step of 1 m, and hovering in gusts; in simulation time"""
+    """the quadrotor's controller: a step of 1 m, hovering in gusts, and the power of hovering; in simulation time"""
     data = run_json(ROOT / "gloam", "python", ROOT / "bench" / "flight.py")
-    for name, bar in (("step_forward", 1.5), ("step_up", 1.5)):
+    for name, bar in (("step_forward", 1.5), ("step_up", 1.5), ("step_forward_without_motors", 1.5)):
         row = data[name]
         yield at_most(f"quadrotor, {name.replace('_', ' ')} of 1 m: s from 10 to 90 %", row["rise_s"], bar, f"overshoot {row['overshoot_percent']:.1f} %")
     for name, bar in (("hover_still", 0.01), ("hover_gusts_8", 0.3), ("hover_gusts_12", 0.5)):
         row = data[name]
         yield at_most(f"quadrotor, {name.replace('_', ' ')}: m of error, root mean square over 60 s", row["rms_m"], bar, f"at most {row['max_m']:.3f} m")
+    power = data["hover_power"]
+    yield at_most("quadrotor, hover: electrical power / ideal power of momentum theory", power["power_W"] / power["ideal_W"], 2.5,
+                  f"{power['power_W']:.0f} W against {power['ideal_W']:.0f} W; {power['minutes_of_82_Wh']:.0f} min of 82 Wh")
 
 
 # With the seconds that each takes on two cores: the first estimate of the time left.

@@ -261,6 +261,17 @@ def propeller_metal():
     return m
 
 
+def write_disc(folder):
+    """The disc of a propeller in flight as the eye sees it: a translucent ring. OBJ with its material, for [[visual]]."""
+    turns = 2 * np.pi * np.arange(48) / 48
+    rings = [(0.0165, -0.0005), (0.1285, 0.0040)]
+    lines = ["mtllib propeller_disc.mtl", "usemtl disc"]
+    lines += [f"v {r * np.cos(a):.5f} {r * np.sin(a):.5f} {z:.5f}" for r, z in rings for a in turns]
+    lines += [f"f {k + 1} {k + 49} {(k + 1) % 48 + 49} {(k + 1) % 48 + 1}" for k in range(48)]
+    (folder / "propeller_disc.obj").write_text("\n".join(lines) + "\n")
+    (folder / "propeller_disc.mtl").write_text("newmtl disc\nKd 0.06 0.06 0.065\nNs 40\nd 0.3\n")
+
+
 PARTS = {
     "frame_shell": frame_shell, "frame_dark": frame_dark, "battery_shell": battery_shell, "frame_trim": frame_trim, "frame_rubber": frame_rubber,
     "frame_metal": frame_metal, "frame_lens": frame_lens, "light_white": light_white, "light_side": light_side, "motor_dark": motor_dark,
@@ -270,3 +281,4 @@ PARTS = {
 if __name__ == "__main__":
     write_parts(PARTS, pathlib.Path(__file__).parent / "meshes",
                 {"light_side": 2, "motor_dark": 4, "motor_copper": 4, "propeller": 4, "propeller_metal": 4})
+    write_disc(pathlib.Path(sys.argv[1]) if len(sys.argv) > 1 else pathlib.Path(__file__).parent / "meshes")

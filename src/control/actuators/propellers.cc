@@ -29,7 +29,7 @@ double change_over(double dt, double rate, double decay) {
   return rate * dt * (x > 1e-9 ? -std::expm1(-x) / x : 1);
 }
 
-struct Rotor {
+struct Shaft {
   size_t row;
   double thrust_factor, torque_factor;          // k_T [N s²/rad²], k_Q [N m s²/rad²]
   double zero_thrust_speed, zero_torque_speed;  // v per shaft speed at which they are zero [m]
@@ -64,14 +64,14 @@ struct ChangeRange {
   double low = -kUnlimited, high = kUnlimited;  // [rad/s]
 };
 
-ChangeRange change_range(const Rotor& rotor, const Drive& drive, double dt) {
+ChangeRange change_range(const Shaft& shaft, const Drive& drive, double dt) {
   const ActuatorOptions& o = drive.options();
-  const double k = o.torque_constant, w = rotor.speed, inertia = o.propeller->inertia;
+  const double k = o.torque_constant, w = shaft.speed, inertia = o.propeller->inertia;
   const bool is_off = drive.supply <= 0;
   if (is_off && inertia == 0) return {-kUnlimited, -kUnlimited};
   if (!is_off && k == 0) return {};  // the motor is not modelled
-  const double load = rotor.torque(w, drive.inflow) + friction_of(o, w);
-  const double load_decay = 2 * rotor.torque_factor * w / inertia;  // [1/s]
+  const double load = shaft.torque(w, drive.inflow) + friction_of(o, w);
+  const double load_decay = 2 * shaft.torque_factor * w / inertia;  // [1/s]
   const auto with_current = [&](double i) {
     return change_over(dt, (k * i - load) / inertia, load_decay);
   };
@@ -80,7 +80,7 @@ ChangeRange change_range(const Rotor& rotor, const Drive& drive, double dt) {
     return change_over(dt, (k * (volts - k * w) / o.winding_resistance - load) / inertia,
                        load_decay + k * k / (o.winding_resistance * inertia));
   };
-  ChangeRange range{with_voltage(0), with_voltage(drive.supply * rotor.nominal_voltage)};
+  ChangeRange range{with_voltage(0), with_voltage(drive.supply * shaft.nominal_voltage)};
   if (const double most = o.propeller->current_limit; most > 0)
     range = {std::max(range.low, with_current(-most)), std::min(range.high, with_current(most))};
   return {std::min(range.low, range.high), range.high};
@@ -88,30 +88,30 @@ ChangeRange change_range(const Rotor& rotor, const Drive& drive, double dt) {
 
 class Propellers final : public ActuatorModel {
  public:
-  explicit Propellers(std::vector<Rotor> rotors) : rotors_(std::move(rotors)) {}
+  explicit Propellers(std::vector<Shaft> shafts) : shafts_(std::move(shafts)) {}
 
   std::string_view kind() const override { return "propellers"; }
   // They turn at the speed of the commanded thrust.
   void reset(std::span<Drive> drives) override {
-    for (Rotor& rotor : rotors_) {
-      Drive& drive = drives[rotor.row];
-      rotor.speed =
-          rotor.speed_of(std::min(drive.gain * drive.command * drive.gear, rotor.highest));
-      drive.shaft_speed = rotor.speed;
+    for (Shaft& shaft : shafts_) {
+      Drive& drive = drives[shaft.row];
+      shaft.speed =
+          shaft.speed_of(std::min(drive.gain * drive.command * drive.gear, shaft.highest));
+      drive.shaft_speed = shaft.speed;
     }
   }
   void take_over(const ActuatorModel& before, std::span<const int> old_row) override {
-    for (Rotor& rotor : rotors_)
-      for (const Rotor& from : static_cast<const Propellers&>(before).rotors_)
-        if (static_cast<int>(from.row) == old_row[rotor.row]) rotor.speed = from.speed;
+    for (Shaft& shaft : shafts_)
+      for (const Shaft& from : static_cast<const Propellers&>(before).shafts_)
+        if (static_cast<int>(from.row) == old_row[shaft.row]) shaft.speed = from.speed;
   }
   bool apply(ActuatorStep& step) override {
-    for (Rotor& rotor : rotors_) turn(rotor, step.drives[rotor.row], step.timestep);
+    for (Shaft& shaft : shafts_) turn(shaft, step.drives[shaft.row], step.timestep);
     return true;
   }
   uint64_t hash(uint64_t before) const override {
-    for (const Rotor& rotor : rotors_)
-      before = hash_bytes(&rotor.speed, sizeof(rotor.speed), before);
+    for (const Shaft& shaft : shafts_)
+      before = hash_bytes(&shaft.speed, sizeof(shaft.speed), before);
     return before;
   }
   std::unique_ptr<ActuatorModel> clone() const override {
@@ -121,65 +121,65 @@ class Propellers final : public ActuatorModel {
  private:
   // Thrust and torque are those of the mean speed of the step, so that the energy of the shaft is
   // in balance with them.
-  static void turn(Rotor& rotor, Drive& drive, double dt) {
+  static void turn(Shaft& shaft, Drive& drive, double dt) {
     const ActuatorOptions& o = drive.options();
-    const ChangeRange range = change_range(rotor, drive, dt);
+    const ChangeRange range = change_range(shaft, drive, dt);
     const double approach = -std::expm1(-dt / o.propeller->response_time);
-    const double wanted = approach * (rotor.speed_of(drive.torque) - rotor.speed);
-    const double next = std::max(0.0, rotor.speed + std::clamp(wanted, range.low, range.high));
-    const double mean = 0.5 * (rotor.speed + next);
-    const double gain = o.propeller->inertia * (next - rotor.speed) / dt;  // [N m]
-    rotor.speed = next;
-    drive.torque = rotor.thrust(mean, drive.inflow);
+    const double wanted = approach * (shaft.speed_of(drive.torque) - shaft.speed);
+    const double next = std::max(0.0, shaft.speed + std::clamp(wanted, range.low, range.high));
+    const double mean = 0.5 * (shaft.speed + next);
+    const double gain = o.propeller->inertia * (next - shaft.speed) / dt;  // [N m]
+    shaft.speed = next;
+    drive.torque = shaft.thrust(mean, drive.inflow);
     drive.shaft_speed = mean;
     drive.shaft_torque =
-        drive.supply > 0 ? gain + rotor.torque(mean, drive.inflow) + friction_of(o, mean) : 0;
+        drive.supply > 0 ? gain + shaft.torque(mean, drive.inflow) + friction_of(o, mean) : 0;
   }
 
-  std::vector<Rotor> rotors_;
+  std::vector<Shaft> shafts_;
 };
 
-Result<Rotor> make_rotor(const ActuatorParts& parts, size_t row) {
+Result<Shaft> make_shaft(const ActuatorParts& parts, size_t row) {
   const DriveSetup& drive = parts.drives[row];
   const PropellerOptions& o = *drive.options.propeller;
   const mjModel& m = parts.model;
   const mjtNum* gear = m.actuator_gear + 6 * drive.output;
   const double d4 = std::pow(o.diameter, 4), pi = M_PI;
-  Rotor rotor{.row = row};
-  rotor.thrust_factor = o.thrust_coefficient * o.air_density * d4 / (4 * pi * pi);
+  Shaft shaft{.row = row};
+  shaft.thrust_factor = o.thrust_coefficient * o.air_density * d4 / (4 * pi * pi);
   const double reaction = std::abs(mju_dot3(gear, gear + 3)) / mju_dot3(gear, gear);  // [m]
-  rotor.torque_factor = o.power_coefficient ? *o.power_coefficient * o.air_density * d4 *
+  shaft.torque_factor = o.power_coefficient ? *o.power_coefficient * o.air_density * d4 *
                                                   o.diameter / (8 * pi * pi * pi)
-                                            : reaction * rotor.thrust_factor;
-  if (rotor.torque_factor == 0 && drive.options.torque_constant > 0)
+                                            : reaction * shaft.thrust_factor;
+  if (shaft.torque_factor == 0 && drive.options.torque_constant > 0)
     return Error{ErrorKind::kInput,
                  fmt::format("the propeller of actuator '{}' of robot '{}' has no torque",
                              drive.name, parts.robot.name),
                  drive.options.loc,
                  "specify 'power_coefficient', or the reaction torque in the actuator's gear"};
   const double turn = o.diameter / (2 * pi);  // J = v / (w · turn)
-  rotor.zero_thrust_speed = o.zero_thrust_advance ? *o.zero_thrust_advance * turn : kUnlimited;
-  rotor.zero_torque_speed = o.zero_torque_advance ? *o.zero_torque_advance * turn : kUnlimited;
+  shaft.zero_thrust_speed = o.zero_thrust_advance ? *o.zero_thrust_advance * turn : kUnlimited;
+  shaft.zero_torque_speed = o.zero_torque_advance ? *o.zero_torque_advance * turn : kUnlimited;
   const auto& shared = parts.robot.actuators;
-  rotor.nominal_voltage = shared && shared->battery ? nominal_voltage(*shared->battery) : o.voltage;
+  shaft.nominal_voltage = shared && shared->battery ? nominal_voltage(*shared->battery) : o.voltage;
   const int a = drive.actuator;
-  rotor.highest = kUnlimited;
+  shaft.highest = kUnlimited;
   if (m.actuator_ctrllimited[drive.ctrl])
-    rotor.highest = m.actuator_gainprm[mjNGAIN * a] * m.actuator_ctrlrange[2 * drive.ctrl + 1] *
+    shaft.highest = m.actuator_gainprm[mjNGAIN * a] * m.actuator_ctrlrange[2 * drive.ctrl + 1] *
                     mju_norm3(gear);
-  return rotor;
+  return shaft;
 }
 
 }  // namespace
 
 Result<std::unique_ptr<ActuatorModel>> make_propellers(const ActuatorParts& parts) {
-  std::vector<Rotor> rotors;
+  std::vector<Shaft> shafts;
   for (size_t row = 0; row < parts.drives.size(); ++row) {
     if (!parts.drives[row].options.propeller) continue;
-    GLOAM_TRY(rotors.emplace_back(), make_rotor(parts, row));
+    GLOAM_TRY(shafts.emplace_back(), make_shaft(parts, row));
   }
-  if (rotors.empty()) return std::unique_ptr<ActuatorModel>();
-  return std::unique_ptr<ActuatorModel>(std::make_unique<Propellers>(std::move(rotors)));
+  if (shafts.empty()) return std::unique_ptr<ActuatorModel>();
+  return std::unique_ptr<ActuatorModel>(std::make_unique<Propellers>(std::move(shafts)));
 }
 
 }  // namespace gloam

@@ -41,6 +41,12 @@ void drop_other_controller(const toml::table& own, toml::table* entry) {
   for (const std::string& key : dropped) defaults->erase(key);
 }
 
+// `actuator = []` leaves out the models of actuators, and with them their battery.
+void drop_unused_supply(const toml::table& own, toml::table* entry) {
+  const toml::array* actuators = own["actuator"].as_array();
+  if (actuators != nullptr && actuators->empty()) entry->erase("actuators");
+}
+
 void add_prefix(const std::string& prefix, toml::node* node) {
   if (toml::value<std::string>* text = node->as_string()) text->get().insert(0, prefix);
   if (toml::array* list = node->as_array())
@@ -160,6 +166,7 @@ Status merge_robot_entry(RobotEntry entry, const std::string& file, toml::table*
   robot->erase("model");
   robot->erase("sensors");
   drop_other_controller(*robot, &entry.robot);
+  drop_unused_supply(*robot, &entry.robot);
   fill_from(std::move(entry.robot), robot);
   return {};
 }
