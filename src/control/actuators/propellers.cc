@@ -20,6 +20,10 @@ namespace gloam {
 namespace {
 
 constexpr double kUnlimited = std::numeric_limits<double>::infinity();
+// The motors of a robot and its battery limit each other at once, but the battery is solved after
+// them, from their power. Where their windings have less resistance than the battery, a voltage of
+// the step before would swing: it follows within this time instead [s].
+constexpr double kVoltageTime = 0.01;
 constexpr double kCreep = 1;  // speed below which the friction of the motor falls to zero [rad/s]
 
 // Change over dt of a speed whose derivative is `rate` and falls by `decay` per speed [1/s]: exact
@@ -36,6 +40,7 @@ struct Shaft {
   double nominal_voltage;                       // [V]
   double highest;                               // commanded thrust at the start [N]
   double speed = 0;                             // of the shaft [rad/s]
+  double supply = 1;                            // voltage over nominal voltage, smoothed
 
   // At the shaft speed w and the inflow v, for J from −J_T to 2 J_T.
   double air_speed(double w, double v) const {
@@ -80,7 +85,7 @@ ChangeRange change_range(const Shaft& shaft, const Drive& drive, double dt) {
     return change_over(dt, (k * (volts - k * w) / o.winding_resistance - load) / inertia,
                        load_decay + k * k / (o.winding_resistance * inertia));
   };
-  ChangeRange range{with_voltage(0), with_voltage(drive.supply * shaft.nominal_voltage)};
+  ChangeRange range{with_voltage(0), with_voltage(shaft.supply * shaft.nominal_voltage)};
   if (const double most = o.propeller->current_limit; most > 0)
     range = {std::max(range.low, with_current(-most)), std::min(range.high, with_current(most))};
   return {std::min(range.low, range.high), range.high};
@@ -97,21 +102,25 @@ class Propellers final : public ActuatorModel {
       Drive& drive = drives[shaft.row];
       shaft.speed =
           shaft.speed_of(std::min(drive.gain * drive.command * drive.gear, shaft.highest));
+      shaft.supply = drive.supply;
       drive.shaft_speed = shaft.speed;
     }
   }
   void take_over(const ActuatorModel& before, std::span<const int> old_row) override {
     for (Shaft& shaft : shafts_)
       for (const Shaft& from : static_cast<const Propellers&>(before).shafts_)
-        if (static_cast<int>(from.row) == old_row[shaft.row]) shaft.speed = from.speed;
+        if (static_cast<int>(from.row) == old_row[shaft.row])
+          shaft.speed = from.speed, shaft.supply = from.supply;
   }
   bool apply(ActuatorStep& step) override {
     for (Shaft& shaft : shafts_) turn(shaft, step.drives[shaft.row], step.timestep);
     return true;
   }
   uint64_t hash(uint64_t before) const override {
-    for (const Shaft& shaft : shafts_)
-      before = hash_bytes(&shaft.speed, sizeof(shaft.speed), before);
+    for (const Shaft& shaft : shafts_) {
+      const double memory[] = {shaft.speed, shaft.supply};
+      before = hash_span<double>(memory, before);
+    }
     return before;
   }
   std::unique_ptr<ActuatorModel> clone() const override {
@@ -123,6 +132,7 @@ class Propellers final : public ActuatorModel {
   // in balance with them.
   static void turn(Shaft& shaft, Drive& drive, double dt) {
     const ActuatorOptions& o = drive.options();
+    shaft.supply += -std::expm1(-dt / kVoltageTime) * (drive.supply - shaft.supply);
     const ChangeRange range = change_range(shaft, drive, dt);
     const double approach = -std::expm1(-dt / o.propeller->response_time);
     const double wanted = approach * (shaft.speed_of(drive.torque) - shaft.speed);

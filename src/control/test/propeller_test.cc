@@ -213,7 +213,7 @@ TEST(Propeller, ItsEnergyIsInBalance) {
   StandRig rig({}, motor_driven(o));
   double air = 0, heat = 0, friction = 0;
   for (int i = 0; i < 300; ++i) {
-    rig.run(i < 150 ? 5 : 2, 1);
+    rig.run(i < 150 ? 2 : 5, 1);
     const DriveOutput out = rig.drive();
     air += 1e-3 * kTorqueFactor * std::pow(out.speed, 3);
     heat += 1e-3 * kMotorWinding * out.current * out.current;
@@ -229,7 +229,7 @@ TEST(Propeller, ItsEnergyIsInBalance) {
   EXPECT_NEAR(rig.outputs().energy - before, steady, 1e-6 * steady);
 
   StandRig again({}, motor_driven(o));
-  for (int i = 0; i < 300; ++i) again.run(i < 150 ? 5 : 2, 1);
+  for (int i = 0; i < 300; ++i) again.run(i < 150 ? 2 : 5, 1);
   const double shaft = 0.5 * kShaftInertia * std::pow(again.drive().speed, 2);
   EXPECT_NEAR(again.outputs().energy, air + heat + friction + shaft, 2e-3 * air);
 }
