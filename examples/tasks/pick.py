@@ -50,15 +50,17 @@ def look(sim: gloam.Simulation) -> dict[str, np.ndarray]:
     return {name: seen[name] for name in OBJECTS if len(seen.get(name, ())) >= 30}
 
 
-def grasp(points: np.ndarray) -> tuple[np.ndarray, float]:
-    """Point between the pads, and direction in which they close: across the longer axis of the object's top."""
+def grasp(points: np.ndarray, again: bool) -> tuple[np.ndarray, float]:
+    """Point between the pads, and direction in which they close: across the longer axis of the object's top, or, in a
+    second try, along it, where it fits between the fingers."""
     top = np.percentile(points[:, 2], 95)
     high = points[points[:, 2] > top - 0.035, :2]
     axes = np.linalg.eigh(np.cov((high - high.mean(axis=0)).T))[1]  # of increasing extent
     along = (high - high.mean(axis=0)) @ axes
     low, up = np.percentile(along, [2, 98], axis=0)
     center = high.mean(axis=0) + axes[:, 0] * (low + up)[0] / 2
-    return np.array([*center, max(top - 0.028, TABLE + PAD + 0.002)]), float(np.arctan2(axes[1, 0], axes[0, 0]))
+    closing = axes[:, 1 if again and (up - low)[1] < 0.07 else 0]
+    return np.array([*center, max(top - 0.028, TABLE + PAD + 0.002)]), float(np.arctan2(closing[1], closing[0]))
 
 
 class Arm:
@@ -97,20 +99,19 @@ class Arm:
         return direction + np.pi * np.round((natural - direction) / np.pi)
 
 
-def pick(arm: Arm, points: np.ndarray) -> str:
+def pick(arm: Arm, points: np.ndarray, again: bool) -> str:
     """Brings one object to the bin; how that ended."""
-    place, direction = grasp(points)
+    place, direction = grasp(points, again)
     yaw = arm.nearest(direction, place)
     above = np.array([0, 0, 0.12])
     arm.go(place + above, yaw)
     arm.go(place, speed=0.3)
     arm.grip(0.0)
-    lift = np.array([0, 0, 0.15 if arm.holds() else 0.12])
-    arm.go(place + lift, speed=0.3)
+    arm.go(place + above, speed=0.3)
     if not arm.holds():
         arm.grip(OPEN)
         return "missed"
-    release = np.array([*BIN, 0.70 + place[2] - TABLE])
+    release = np.array([*BIN, 0.64 + place[2] - TABLE])
     arm.go(release + [0, -0.02, 0.08], arm.nearest(yaw, release))
     held = arm.holds()
     arm.go(release, speed=0.3)
@@ -127,9 +128,9 @@ def clear_table(sim: gloam.Simulation, seed: int) -> dict[str, tuple[str, int]]:
     tries: Counter[str] = Counter()
     ends: dict[str, str] = {}
     while candidates := {name: points for name, points in look(sim).items() if tries[name] < 2}:
-        name = max(candidates, key=lambda n: np.percentile(candidates[n][:, 2], 95))  # the highest one is in the way
+        name = max(candidates, key=lambda n: np.arctan2(*candidates[n].mean(axis=0)[1::-1]))  # nothing stands before the bin
         tries[name] += 1
-        ends[name] = pick(arm, candidates[name])
+        ends[name] = pick(arm, candidates[name], again=tries[name] > 1)
     result = {}
     for name in OBJECTS:
         p = sim.bodies[name].pose.p
