@@ -152,7 +152,7 @@ def main() -> None:
     first_try, ends = Counter[str](), {name: Counter[str]() for name in OBJECTS}
     for seed in range(arguments.first, arguments.first + arguments.seeds):
         with gloam.Simulation(world, seed=seed) as sim:
-            log = sim.record(arguments.log, overwrite=True) if arguments.log and seed == arguments.first else nullcontext()
+            log = sim.record(arguments.log, ["/clock", "/tf*"], overwrite=True) if arguments.log and seed == arguments.first else nullcontext()
             with log:
                 result = clear_table(sim, seed)
             for name, (end, tries) in result.items():
