@@ -6,15 +6,15 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
-from . import robot, terrain
-from .settings import Settings
+from . import terrain
+from .robot import CONTROL_PERIOD
+from .settings import Commands
 
 _HAS_STEPS = np.isin(terrain.MAP_KINDS, (terrain.STAIRS, terrain.CURBS))
 
 
-def sample(key: jax.Array, map_index: jax.Array, progress: jax.Array, settings: Settings) -> jax.Array:
+def sample(key: jax.Array, map_index: jax.Array, progress: jax.Array, c: Commands) -> jax.Array:
     """(3,) vx, vy, yaw rate; the ranges grow with progress from 0 to 1. Slow commands become zero: standing."""
-    c = settings.commands
     keys = jax.random.split(key, 5)
     has_steps = jnp.asarray(_HAS_STEPS)[map_index]
     low = jnp.array([c.vx[0], c.vy[0], c.yaw_rate[0]])
@@ -32,4 +32,4 @@ def sample(key: jax.Array, map_index: jax.Array, progress: jax.Array, settings: 
 
 def steps_until(key: jax.Array, interval: tuple[float, float]) -> jax.Array:
     """Control steps of a uniformly drawn interval [s]."""
-    return (jax.random.uniform(key, (), minval=interval[0], maxval=interval[1]) / robot.CONTROL_PERIOD).astype(jnp.int32)
+    return (jax.random.uniform(key, (), minval=interval[0], maxval=interval[1]) / CONTROL_PERIOD).astype(jnp.int32)

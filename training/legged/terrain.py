@@ -17,8 +17,6 @@ import numpy as np
 from mujoco.mjx._src import collision_driver  # MJX has no public table of its collision functions
 from mujoco.mjx._src import math as mjx_math
 
-from .robot import FOOT_RADIUS
-
 CELL = 0.1  # edge length of a column [m]; larger than a foot
 CELLS = 128  # columns per period
 ROUGH_HEIGHT = 0.08  # [m] at level 1
@@ -31,21 +29,20 @@ MAP_KINDS = (FLAT, FLAT, FLAT, ROUGH, ROUGH, ROUGH, STAIRS, STAIRS, STAIRS, WAVE
 
 
 class Ground(NamedTuple):
-    """Ground of one world, as it is packed into mjData.userdata (8 of its numbers)."""
+    """Ground of one world, as it is packed into mjData.userdata (Robot.userdata_size)."""
 
     map: jax.Array  # index into the maps
     offset: jax.Array  # (2,) of the map's origin [m]
     level: jax.Array  # scale of the heights, 0 … 1.2
-    sinkage: jax.Array  # (4,) depth of the print under each foot [m]
+    sinkage: jax.Array  # (spheres,) depth of the print under each sphere of the soles [m]
 
 
 def pack(ground: Ground) -> jax.Array:
-    parts = (ground.map[None].astype(jnp.float32), ground.offset, ground.level[None], ground.sinkage)
-    return jnp.concatenate([*parts, jnp.zeros(4)])
+    return jnp.concatenate([ground.map[None].astype(jnp.float32), ground.offset, ground.level[None], ground.sinkage])
 
 
 def unpack(userdata: jax.Array) -> Ground:
-    return Ground(userdata[0].astype(jnp.int32), userdata[1:3], userdata[3], userdata[4:8])
+    return Ground(userdata[0].astype(jnp.int32), userdata[1:3], userdata[3], userdata[4:])
 
 
 def _rough(rng: np.random.Generator, block: int) -> np.ndarray:
@@ -101,7 +98,7 @@ def heights(maps: jax.Array, ground: Ground, points: jax.Array) -> jax.Array:
 
 
 def _side_contact(maps: jax.Array, ground: Ground, centre: jax.Array, own: jax.Array) -> tuple[jax.Array, jax.Array]:
-    """Distance and normal of the nearest higher column beside a foot at `centre` (3,)."""
+    """Distance of a sphere's `centre` (3,) from the nearest higher column beside it, and the normal."""
     local = (centre[:2] + ground.offset) / CELL
     corner = jnp.floor(local + 0.5)  # the corner of columns nearest to the foot
     towards = jnp.where(corner > local, 1.0, -1.0)
@@ -111,31 +108,31 @@ def _side_contact(maps: jax.Array, ground: Ground, centre: jax.Array, own: jax.A
     drop = jnp.maximum(centre[2] - height, 0.0)
     delta = jnp.concatenate([-moves * edge, drop[:, None]], axis=1)  # from the column to the centre
     length = jnp.linalg.norm(delta + 1e-9, axis=1)
-    distance = jnp.where(height > own + 1e-3, length - FOOT_RADIUS, 1.0)
+    distance = jnp.where(height > own + 1e-3, length, 10.0)
     best = jnp.argmin(distance)
     return distance[best], delta[best] / length[best]
 
 
-def foot_contacts(maps: jax.Array, ground: Ground, centres: jax.Array) -> tuple[jax.Array, jax.Array, jax.Array]:
-    """Two contacts per foot, below and beside: distances (8,), points (8, 3), normals (8, 3)."""
+def sole_contacts(maps: jax.Array, ground: Ground, centres: jax.Array, radius: float) -> tuple[jax.Array, jax.Array, jax.Array]:
+    """Two contacts for each of n spheres, below and beside: distances (2n,), points (2n, 3), normals (2n, 3)."""
 
     def one(centre: jax.Array, sinkage: jax.Array) -> tuple[jax.Array, jax.Array]:
         own = heights(maps, ground, centre[None, :2])[0]
-        below = jnp.maximum(centre[2] - FOOT_RADIUS - (own - sinkage), -DEEPEST)
+        below = jnp.maximum(centre[2] - radius - (own - sinkage), -DEEPEST)
         side, side_normal = _side_contact(maps, ground, centre, own)
-        return jnp.stack([below, side]), jnp.stack([jnp.array([0.0, 0.0, 1.0]), side_normal])
+        return jnp.stack([below, side - radius]), jnp.stack([jnp.array([0.0, 0.0, 1.0]), side_normal])
 
     distance, normal = jax.vmap(one)(centres, ground.sinkage)
-    distance, normal = distance.reshape(8), normal.reshape(8, 3)
-    points = jnp.repeat(centres, 2, axis=0) - normal * (FOOT_RADIUS + 0.5 * distance)[:, None]
+    distance, normal = distance.ravel(), normal.reshape(-1, 3)
+    points = jnp.repeat(centres, 2, axis=0) - normal * (radius + 0.5 * distance)[:, None]
     return distance, points, normal
 
 
-def install(maps: jax.Array) -> None:
-    """Makes MJX collide planes and spheres by foot_contacts(); the ground's state is in mjData.userdata."""
+def install(maps: jax.Array, radius: float) -> None:
+    """Makes MJX collide planes and spheres by sole_contacts(); the ground's state is in mjData.userdata."""
 
     def collide(_model: Any, data: Any, _key: Any, geom: jax.Array) -> tuple[jax.Array, jax.Array, jax.Array]:
-        distance, points, normal = foot_contacts(maps, unpack(data.userdata), data.geom_xpos[geom[:, 1]])
+        distance, points, normal = sole_contacts(maps, unpack(data.userdata), data.geom_xpos[geom[:, 1]], radius)
         return distance, points, jax.vmap(mjx_math.make_frame)(normal)
 
     collide.ncon = 2  # type: ignore[attr-defined]

@@ -1,6 +1,6 @@
-"""Trains the quadruped's policy: `python3 -m training.quadruped.train --out results/training` (training/README.md).
+"""Trains a policy: `python3 -m training.legged.train quadruped --out results/training` (training/README.md).
 
-Passes through settings.STAGES. Stops after `--seconds`, and writes checkpoint.npz every minute and log.csv, a row
+Passes through the stages of the task. Stops after `--seconds`, and writes checkpoint.npz every minute and log.csv, a row
 every ten iterations. `--resume` continues from a checkpoint.
 """
 
@@ -9,6 +9,7 @@ from __future__ import annotations
 import argparse
 import csv
 import dataclasses
+import math
 import time
 from functools import partial
 from pathlib import Path
@@ -19,10 +20,11 @@ import jax.numpy as jnp
 import numpy as np
 from mujoco import mjx
 
-from .. import checkpoint, ppo
+from .. import checkpoint, ppo, tasks
 from . import observation, terrain
 from .environment import Environment, State
-from .settings import STAGES, Settings
+from .settings import Settings
+from .terms import size
 from .worlds import make_models, make_world
 
 LOG_EVERY = 10  # iterations
@@ -32,7 +34,7 @@ SAVE_EVERY = 60.0  # [s]
 def make_task(settings: Settings, key: jax.Array) -> tuple[ppo.Task, State]:
     """The task of PPO and the first states of all worlds."""
     maps = terrain.make_maps(settings.seed)
-    terrain.install(maps)
+    terrain.install(maps, settings.robot.sole_radius)
     environment = Environment(maps, settings)
     keys = jax.random.split(key, 3)
     count = settings.ppo.worlds
@@ -50,7 +52,8 @@ def make_task(settings: Settings, key: jax.Array) -> tuple[ppo.Task, State]:
         return jax.vmap(observation.flatten)(state.history), state.hidden
 
     state = jax.jit(jax.vmap(first, in_axes=(axes, 0, 0)))(models, worlds, jax.random.split(keys[2], count))
-    task = ppo.Task(observation.SIZE, observation.PRIVILEGED_SIZE, 12, observe, step, observation.mirror)
+    sizes = size(environment.actor), size(environment.critic), environment.joints
+    task = ppo.Task(*sizes, observe, step, observation.mirror(settings.robot))
     return task, state
 
 
@@ -110,23 +113,24 @@ SHOWN = ("iteration", "seconds", "reward", "failures", "velocity_error", "yaw_ra
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("task", choices=tasks.NAMES)
     parser.add_argument("--out", type=Path, default=Path("results/training"))
     parser.add_argument("--resume", type=Path, help="a checkpoint.npz to continue")
-    parser.add_argument("--seconds", type=float, default=3600)
-    parser.add_argument("--iterations", type=int, default=STAGES[-1].until, help="the last iteration")
+    parser.add_argument("--seconds", type=float, default=math.inf)
+    parser.add_argument("--iterations", type=int, help="the last iteration")
     parser.add_argument("--worlds", type=int)
     parser.add_argument("--seed", type=int, default=1)
     arguments = parser.parse_args()
-    base = Settings(seed=arguments.seed)
+    base = dataclasses.replace(tasks.settings(arguments.task), seed=arguments.seed)
     if arguments.worlds is not None:
         base = dataclasses.replace(base, ppo=dataclasses.replace(base.ppo, worlds=arguments.worlds))
     end, done, resume = time.monotonic() + arguments.seconds, 0, arguments.resume
     if resume is not None:
         done = checkpoint.progress(resume)
-    for stage in STAGES:
-        last = min(stage.until, arguments.iterations)
+    for stage in base.stages:
+        last = min(stage.until, arguments.iterations or stage.until)
         if done < last and time.monotonic() < end:
-            run = Run(stage.settings(base), arguments.out, resume)
+            run = Run(base.of(stage), arguments.out, resume)
             run.train(last, end)
             done, resume = run.iteration, arguments.out / "checkpoint.npz"
 

@@ -9,6 +9,8 @@ import jax
 import jax.numpy as jnp
 from jax.scipy.stats import norm
 
+from .settings import Gaits
+
 TROT, PACE, BOUND = (0.5, 0.0, 0.0), (0.0, 0.5, 0.0), (0.0, 0.0, 0.5)  # phase, offset, bound
 TOUCH_SPREAD = 0.05  # standard deviation of the moments of touch-down and lift-off, in cycles
 LEAST_CLEARANCE = 0.01  # of a swinging foot's lowest point at both ends of its swing [m]
@@ -57,16 +59,14 @@ def wanted_clearances(phases: jax.Array, gait: Gait) -> jax.Array:
     return LEAST_CLEARANCE + gait.swing_height * (1 - jnp.abs(1 - 2 * progress))
 
 
-def sample(key: jax.Array) -> Gait:
-    """Trot in 70 % of the draws, otherwise pace or bound."""
+def sample(key: jax.Array, ranges: Gaits) -> Gait:
     keys = jax.random.split(key, 5)
-    kind = jax.random.choice(keys[0], 3, p=jnp.array([0.7, 0.15, 0.15]))
+    kind = jax.random.choice(keys[0], 3, p=jnp.asarray(ranges.shares))
     delays = jnp.array([TROT, PACE, BOUND])[kind]
 
-    def uniform(number: int, low: float, high: float) -> jax.Array:
-        return jax.random.uniform(keys[number], (), minval=low, maxval=high)
+    def uniform(number: int, limits: tuple[float, float]) -> jax.Array:
+        return jax.random.uniform(keys[number], (), minval=limits[0], maxval=limits[1])
 
-    height = uniform(4, -0.05, 0.03)
-    return Gait(
-        uniform(1, 1.8, 3.6), delays[0], delays[1], delays[2], uniform(2, 0.45, 0.6), uniform(3, 0.04, 0.12), height
-    )
+    height = uniform(4, ranges.body_height)
+    frequency, duration, swing = (uniform(n, r) for n, r in ((1, ranges.frequency), (2, ranges.duration), (3, ranges.swing_height)))
+    return Gait(frequency, delays[0], delays[1], delays[2], duration, swing, height)

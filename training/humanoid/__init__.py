@@ -1,0 +1,1 @@
+"""Velocity tracking of the humanoid in assets/robots/humanoid."""

@@ -1,0 +1,1 @@
+"""Velocity tracking of the mobile manipulator in assets/robots/mobile_manipulator while its arm moves."""
