@@ -15,7 +15,7 @@ jnp = jax.numpy
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT))
 from training import checkpoint, ppo  # noqa: E402
-from training.quadruped.settings import Ppo  # noqa: E402
+from training.legged.settings import Ppo  # noqa: E402
 
 SMALL = Ppo(worlds=64, horizon=8, epochs=4, minibatches=2, hidden=(16,), learning_rate=5e-3, most_learning_rate=2e-2)
 

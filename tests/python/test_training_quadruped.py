@@ -9,9 +9,13 @@ import pytest
 mujoco = pytest.importorskip("mujoco")
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT))
-from training import export  # noqa: E402
-from training.quadruped import evaluate, publish, terms  # noqa: E402
-from training.quadruped.driver import Driver, GaitChoice, load_network  # noqa: E402
+from training import export, tasks  # noqa: E402
+from training.legged import publish, terms  # noqa: E402
+from training.legged.driver import Driver, load_network  # noqa: E402
+from training.legged.robot import GaitChoice  # noqa: E402
+from training.quadruped import evaluate  # noqa: E402
+from training.quadruped.robot import ROBOT  # noqa: E402
+from training.quadruped.settings import SETTINGS  # noqa: E402
 
 POLICY = ROOT / "assets/policies/quadruped"
 
@@ -25,14 +29,14 @@ def network():
 @pytest.mark.parametrize("command", [(0.5, 0.0, 0.0), (0.0, 0.0, 1.0), (0.0, 0.0, 0.0)])
 def test_published_network_walks_in_mujoco(network, command):
     """In MuJoCo with the whole model at 2 ms; it was trained at 4 ms with feet as its only colliders."""
-    result = evaluate.run(evaluate.build("flat"), Driver(network), command, 5.0)
+    result = evaluate.run(evaluate.build("flat"), Driver(ROBOT, network), command, 5.0)
     assert not result.fell
     assert result.velocity_error < 0.05 and result.yaw_rate_error < 0.05
     assert abs(result.distance - 4 * command[0]) < 0.5  # of the four seconds after the first
 
 
 def test_published_network_crosses_rough_ground(network):
-    result = evaluate.run(evaluate.build("rough", friction=0.6), Driver(network), (0.5, 0.0, 0.0), 5.0)
+    result = evaluate.run(evaluate.build("rough", friction=0.6), Driver(ROBOT, network), (0.5, 0.0, 0.0), 5.0)
     assert not result.fell and result.velocity_error < 0.15 and result.distance > 1.5
 
 
@@ -41,7 +45,7 @@ def test_clock_follows_the_gait(network):
     model = evaluate.build("flat")
     steps = []
     for frequency in (2.0, 3.0):
-        data, driver = mujoco.MjData(model), Driver(network, GaitChoice(frequency=frequency))
+        data, driver = mujoco.MjData(model), Driver(ROBOT, network, GaitChoice(frequency=frequency))
         mujoco.mj_resetDataKeyframe(model, data, 0)
         driver.command = np.array([0.5, 0.0, 0.0])
         touching, landings = True, 0
@@ -49,7 +53,7 @@ def test_clock_follows_the_gait(network):
         for step in range(2500):
             if step % 10 == 0:
                 targets = driver.targets(data.qpos, data.qvel)
-            data.ctrl[:] = evaluate.torques(targets, data.qpos[7:], data.qvel[6:])
+            data.ctrl[:] = driver.torques(targets, data.qpos[7:], data.qvel[6:])
             mujoco.mj_step(model, data)
             height = data.geom_xpos[foot][2] - 0.022
             if step > 500 and touching != (height < 0.015):
@@ -60,8 +64,8 @@ def test_clock_follows_the_gait(network):
 
 
 def test_settings_file_is_of_this_code(network):
-    assert (POLICY / "policy.toml").read_text() == publish.policy_toml()
-    assert network(np.zeros(terms.SIZE)).shape == (12,)
+    assert (POLICY / "policy.toml").read_text() == publish.policy_toml(SETTINGS)
+    assert network(np.zeros(terms.size(terms.actor_terms(ROBOT)))).shape == (12,)
     assert (POLICY / "policy.onnx").stat().st_size < 2 * 2**20
 
 
@@ -77,7 +81,7 @@ def test_export_computes_the_same_numbers(tmp_path):
         np.testing.assert_allclose(run(observation), export.evaluate(layers, observation), rtol=1e-4, atol=1e-4)
 
 
-@pytest.mark.parametrize("table", [terms.TERMS, terms.PRIVILEGED])
+@pytest.mark.parametrize("table", [make(tasks.robot(name)) for name in tasks.NAMES for make in (terms.actor_terms, terms.critic_terms)])
 def test_mirror_image_of_the_mirror_image_is_the_original(table):
     source, sign = terms.mirror_table(table)
     values = np.random.default_rng(2).normal(size=len(source))
@@ -88,11 +92,11 @@ def test_mirror_image_of_the_mirror_image_is_the_original(table):
 
 def test_driver_repeats_its_first_observation():
     seen = []
-    driver = Driver(lambda observation: seen.append(observation) or np.zeros(12))
+    driver = Driver(ROBOT, lambda observation: seen.append(observation) or np.zeros(12))
     qpos, qvel = np.zeros(19), np.arange(18.0)
     qpos[3] = 1
     driver.targets(qpos, qvel)
-    assert seen[0].shape == (terms.SIZE,)
+    assert seen[0].shape == (terms.size(terms.actor_terms(ROBOT)),)
     np.testing.assert_allclose(seen[0][:15].reshape(5, 3), np.tile(qvel[3:6] * 0.25, (5, 1)))
     driver.targets(qpos, qvel + 1)
     np.testing.assert_allclose(seen[1][:15].reshape(5, 3)[:4], np.tile(qvel[3:6] * 0.25, (4, 1)))
@@ -108,7 +112,7 @@ class TestInJax:
         pytest.importorskip("mujoco.mjx")
 
     def test_clock_is_that_of_the_driver(self):
-        from training.quadruped import gait
+        from training.legged import gait
 
         choice = GaitChoice(2.0, 0.5, 0.1, 0.2, 0.6, 0.08, 0.0)
         values = gait.Gait(*(np.float32(v) for v in (2.0, 0.5, 0.1, 0.2, 0.6, 0.08, 0.0)))
@@ -120,13 +124,13 @@ class TestInJax:
     def test_feet_touch_steps_from_above_and_from_the_side(self):
         import jax.numpy as jnp
 
-        from training.quadruped import terrain
+        from training.legged import terrain
 
         heights = np.zeros((1, terrain.CELLS, terrain.CELLS), np.float32)
         heights[0, 10:] = 0.1  # a riser at x = 1 m
         ground = terrain.Ground(jnp.asarray(0), jnp.zeros(2), jnp.asarray(1.0), jnp.array([0.0, 0.0, 0.0, 0.02]))
         feet = jnp.array([[0.55, 0.55, 0.022], [0.97, 0.55, 0.05], [0.99, 0.55, 0.11], [1.55, 0.55, 0.122]])
-        distance, points, normal = (np.asarray(a) for a in terrain.foot_contacts(jnp.asarray(heights), ground, feet))
+        distance, points, normal = (np.asarray(a) for a in terrain.sole_contacts(jnp.asarray(heights), ground, feet, 0.022))
         np.testing.assert_allclose(distance[0], 0.0, atol=1e-6)  # stands on the ground
         np.testing.assert_allclose(distance[3], 0.008, atol=1e-6)  # 30 mm before the riser
         np.testing.assert_allclose(normal[3], [-1, 0, 0], atol=1e-4)

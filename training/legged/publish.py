@@ -19,8 +19,8 @@ rate = {rate:g}                  # Hz
 joints = [
 {joints}
 ]
-kp = {kp}                    # N m/rad
-kd = {kd}                   # N m s/rad
+kp = {kp}  # N m/rad
+kd = {kd}  # N m s/rad
 default_positions = {default}  # rad
 action_scale = {scale}  # rad
 action_clip = {clip:g}

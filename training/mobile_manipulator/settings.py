@@ -13,7 +13,7 @@ REWARDS = {
     "vertical_speed": -2.0,
     "tilt_rate": -0.1,
     "tilt": -3.0,
-    "height": -30.0,
+    "height": -80.0,
     "torque": -3e-6,
     "joint_acceleration": -1e-7,
     "action_rate": -0.02,

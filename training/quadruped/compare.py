@@ -19,10 +19,12 @@ import numpy as np
 
 import gloam
 
-from . import ground, robot
-from .driver import Driver, GaitChoice, load_network, torques
+from ..legged.driver import Driver, load_network
+from ..legged.robot import CONTROL_PERIOD, ROOT, GaitChoice
+from . import ground
+from .robot import ROBOT
 
-POLICY = robot.ROOT / "assets/policies/quadruped/policy.onnx"
+POLICY = ROOT / "assets/policies/quadruped/policy.onnx"
 TIMESTEP = 0.002  # [s]
 SETTLE = 1.5  # after a change of command [s]
 GRAVITY = 9.81  # [m/s²]
@@ -77,15 +79,15 @@ class Meter:
 
 def drive_by(driver: Driver) -> Callable[[Any, int], None]:
     """Writes the policy's torques before each step."""
-    every = round(robot.CONTROL_PERIOD / TIMESTEP)
-    targets = robot.DEFAULT_POSITIONS
+    every = round(CONTROL_PERIOD / TIMESTEP)
+    targets = ROBOT.default_positions
 
     def drive(memory: Any, step: int) -> None:
         nonlocal targets
         qpos, qvel = memory.array("qpos")[:19], memory.array("qvel")[:18]
         if step % every == 0:
             targets = driver.targets(qpos, qvel)
-        memory.array("ctrl")[:12] = torques(targets, qpos[7:], qvel[6:])
+        memory.array("ctrl")[:12] = driver.torques(targets, qpos[7:], qvel[6:])
 
     return drive
 
@@ -126,7 +128,7 @@ class Comparison:
 
     def session(self, controller: str, course: str, pushes: str = "") -> Session:
         text = ground.scene(course, "trot" if controller == "trot" else "none", self.folder, TIMESTEP) + pushes
-        driver = Driver(self.network, self.gait) if controller == "policy" else None
+        driver = Driver(ROBOT, self.network, self.gait) if controller == "policy" else None
         return Session(gloam.Scene.parse(text, self.folder), driver)
 
     def walk(self, controller: str, course: str, command: tuple[float, float, float], seconds: float) -> Walk:
@@ -181,7 +183,7 @@ def main() -> None:
     parser.add_argument("--policy", type=Path, default=POLICY)
     parser.add_argument("--seconds", type=float, default=8, help="of each walk")
     parser.add_argument("--courses", nargs="+", default=["flat", "rough", "stairs", *SOILS])
-    parser.add_argument("--frequency", type=float, default=GaitChoice.frequency)
+    parser.add_argument("--frequency", type=float, default=ROBOT.gait.frequency)
     parser.add_argument("--no-pushes", action="store_true")
     parser.add_argument("--json", type=Path)
     arguments = parser.parse_args()

@@ -13,8 +13,10 @@ from pathlib import Path
 import mujoco
 import numpy as np
 
-from . import courses, robot
-from .driver import Driver, GaitChoice, load_network, torques
+from ..legged.driver import Driver, load_network
+from ..legged.robot import CONTROL_PERIOD, GaitChoice
+from . import courses
+from .robot import ROBOT
 
 TIMESTEP = 0.002  # [s]
 SETTLE = 1.0  # until a command counts [s]
@@ -33,7 +35,7 @@ class Result:
 
 
 def build(course: str, friction: float = 0.8) -> mujoco.MjModel:
-    spec = mujoco.MjSpec.from_file(str(robot.MODEL_FILE))
+    spec = mujoco.MjSpec.from_file(str(ROBOT.file))
     courses.add(spec, course)
     spec.option.timestep = TIMESTEP
     for geom in spec.geoms:
@@ -47,13 +49,13 @@ def run(model: mujoco.MjModel, driver: Driver, command: tuple[float, float, floa
     data = mujoco.MjData(model)
     mujoco.mj_resetDataKeyframe(model, data, 0)
     driver.command = np.array(command)
-    every = round(robot.CONTROL_PERIOD / TIMESTEP)
+    every = round(CONTROL_PERIOD / TIMESTEP)
     planar, turned, energy, distance, fell = np.zeros(2), 0.0, 0.0, 0.0, False
     steps, settled = round(seconds / TIMESTEP), round(SETTLE / TIMESTEP)
     for step in range(steps):
         if step % every == 0:
             targets = driver.targets(data.qpos, data.qvel)
-        data.ctrl[:] = torques(targets, data.qpos[7:], data.qvel[6:])
+        data.ctrl[:] = driver.torques(targets, data.qpos[7:], data.qvel[6:])
         mujoco.mj_step(model, data)
         R_WB = data.xmat[1].reshape(3, 3)
         fell = R_WB[2, 2] < 0.5
@@ -87,8 +89,8 @@ def main() -> None:
     parser.add_argument("network", type=Path)
     parser.add_argument("--courses", nargs="+", default=["flat", "rough", "stairs"])
     parser.add_argument("--seconds", type=float, default=8)
-    parser.add_argument("--frequency", type=float, default=GaitChoice.frequency)
-    parser.add_argument("--swing-height", type=float, default=0.08)
+    parser.add_argument("--frequency", type=float, default=ROBOT.gait.frequency)
+    parser.add_argument("--swing-height", type=float, default=ROBOT.gait.swing_height)
     parser.add_argument("--friction", type=float, default=0.8)
     arguments = parser.parse_args()
     network = load_network(arguments.network)
@@ -96,7 +98,7 @@ def main() -> None:
     print("course    vx   vy   yaw  | error m/s  rad/s  cost of transport  distance")
     models = {course: build(course, arguments.friction) for course in arguments.courses}
     for course, command in itertools.product(arguments.courses, COMMANDS):
-        r = run(models[course], Driver(network, gait), command, arguments.seconds)
+        r = run(models[course], Driver(ROBOT, network, gait), command, arguments.seconds)
         print(f"{course:8} {command[0]:4.1f} {command[1]:4.1f} {command[2]:4.1f}  | {r.velocity_error:6.3f} "
               f"{r.yaw_rate_error:8.3f} {r.transport_cost:10.2f} {r.distance:10.2f}  {'FELL' if r.fell else ''}")  # fmt: skip
 

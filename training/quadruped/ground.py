@@ -7,7 +7,8 @@ from pathlib import Path
 
 import mujoco
 
-from . import courses, robot
+from . import courses
+from .robot import ROBOT
 
 SOIL_DEPTH = 0.15  # [m]
 SOIL_SIZE = (13.0, 9.0)  # [m]
@@ -45,7 +46,7 @@ cell = 0.025
 def scene(course: str, controller: str, folder: Path, timestep: float) -> str:
     """The TOML of a scene whose files are written to `folder`. A course that courses.py lacks is a kind of soil."""
     if not (folder / "quadruped").exists():
-        shutil.copytree(robot.MODEL_FILE.parent, folder / "quadruped")
+        shutil.copytree(ROBOT.file.parent, folder / "quadruped")
     is_soil = course not in courses.KINDS
     environment = folder / f"{course}.xml"
     if not environment.exists():
