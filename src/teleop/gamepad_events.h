@@ -1,5 +1,5 @@
 #pragma once
-// Events of the Linux joystick API (linux/joystick.h) and their meaning for a gamepad with the axes
+// Events of the Linux joystick API and their meaning for a gamepad with the axes
 // and buttons of the kernel's driver xpad.
 
 #include <array>
