@@ -30,7 +30,7 @@ struct FlightOptions {
   double max_yaw_rate = 1.5;             ///< [rad/s]
   double tolerance = 0.2;                ///< distance at which a waypoint is reached [m]
   double position_gain = 1.5;            ///< speed per position error [1/s]
-  Vec3 velocity_gains = {5, 1, 0};       ///< PID: acceleration per velocity error [1/s, 1/s², 1]
+  Vec3 velocity_gains = {5, 2, 0};       ///< PID: acceleration per velocity error [1/s, 1/s², 1]
   double attitude_gain = 10;             ///< angular velocity per attitude error [1/s]
   Vec3 rate_gains = {25, 20, 0};  ///< PID: angular acceleration per rate error [1/s, 1/s², 1]
 };
