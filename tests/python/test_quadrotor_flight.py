@@ -118,19 +118,9 @@ def test_it_flies_its_waypoints_in_gusts_and_its_downwash_moves_the_smoke(exampl
     assert gloam.replay(tmp_path / "flight.mcap").verify().is_equal
 
     _, still, _ = fly(examples, scene(examples, rotors=False), tmp_path / "without.mcap")
-    ring = [i for i, place in enumerate(PLACES) if place[2] < 0.5]
-
-    def outflow(probes: dict[str, np.ndarray]) -> float:
-        """Mean radial speed of the air along the ground around the pot [m/s]."""
-        return float(np.mean([probes[f"v{i}"][over] @ np.array(PLACES[i]) / 1.2 for i in ring]))
-
-    def on_the_ground(probes: dict[str, np.ndarray]) -> float:
-        """Mean density of the smoke there [kg/m³]."""
-        return float(np.mean([probes[f"d{i}"][over] for i in ring]))
-
+    smoke, smoke_still = (np.stack([probes[f"d{i}"][over, 0] for i in range(len(PLACES))]) for probes in (air, still))
+    moved = float(np.abs(smoke - smoke_still).sum() / smoke_still.sum())
     down = [float(np.mean(probes[f"v{len(PLACES) - 1}"][over, 2])) for probes in (air, still)]
-    print(f"under the rotors {down[0]:.2f} m/s against {down[1]:.2f} m/s; outwards along the ground {outflow(air):.2f} against {outflow(still):.2f} m/s; "
-          f"smoke there {on_the_ground(air) * 1e3:.2f} against {on_the_ground(still) * 1e3:.2f} g/m3")
-    assert down[0] < down[1] - 0.5 and down[0] < 0
-    assert outflow(air) > outflow(still) + 0.3
-    assert on_the_ground(air) > 2 * on_the_ground(still)
+    print(f"under the rotors {down[0]:.2f} m/s against {down[1]:.2f} m/s; {moved * 100:.0f} % of the smoke is elsewhere")
+    assert down[0] < down[1] - 0.5 and down[0] < 0  # without rotors the warm smoke rises
+    assert moved > 0.3
