@@ -67,12 +67,17 @@ void on_stop(int) {
   errno = error;
 }
 
+// Signals that are ignored stay ignored.
+void watch_signal(int signal, void (*handler)(int), struct sigaction* former) {
+  const struct sigaction action = action_of(handler);
+  ::sigaction(signal, nullptr, former);
+  if (former->sa_handler != SIG_IGN) ::sigaction(signal, &action, nullptr);
+}
+
 void watch_signals() {
-  const struct sigaction fatal = action_of(on_fatal), stop = action_of(on_stop);
   for (size_t i = 0; i < kFatalSignals.size(); ++i)
-    ::sigaction(kFatalSignals[i], &fatal, &former_fatal[i]);
-  ::sigaction(SIGTSTP, nullptr, &former_stop);
-  if (former_stop.sa_handler != SIG_IGN) ::sigaction(SIGTSTP, &stop, nullptr);
+    watch_signal(kFatalSignals[i], on_fatal, &former_fatal[i]);
+  watch_signal(SIGTSTP, on_stop, &former_stop);
 }
 
 void leave_signals() {

@@ -40,6 +40,8 @@ class Session:
         self.pid, self.master = pty.fork()
         if self.pid == 0:
             os.chdir(folder)
+            for number in (signal.SIGINT, signal.SIGQUIT, signal.SIGTSTP):
+                signal.signal(number, signal.SIG_DFL)  # a shell may have started the tests with them ignored
             os.execvpe(arguments[0], list(map(str, arguments)),
                        {**os.environ, "GLOAM_CACHE": str(folder / "cache"), "TERM": "xterm", "PS1": "$ "})
         fcntl.ioctl(self.master, termios.TIOCSWINSZ, struct.pack("HHHH", 24, columns, 0, 0))
@@ -68,7 +70,7 @@ class Session:
             if found := re.search(pattern, self.text):
                 return found
             time.sleep(0.02)
-        raise AssertionError(f"no {pattern!r} in {self.text!r}")
+        raise AssertionError(f"no {pattern!r} in {self.text[-600:]!r}")
 
     def forget(self):
         self.text = ""
@@ -81,7 +83,7 @@ class Session:
                 self.code = os.waitstatus_to_exitcode(status)
                 return self.code
             time.sleep(0.02)
-        raise AssertionError(f"it does not end: {self.text!r}")
+        raise AssertionError(f"it does not end: {self.text[-600:]!r}")
 
     def close(self):
         if self.code is None:
@@ -106,7 +108,7 @@ class Teleop(ProgramTest):
     def run_teleop(self, *extra, columns=100):
         session = self.session(PROGRAM, "run", self.scene, "--teleop", *extra, columns=columns)
         session.mode = termios.tcgetattr(session.master)
-        session.wait_for("real time")
+        session.wait_for("base: vx")
         self.assertNotEqual(termios.tcgetattr(session.master)[3], session.mode[3], "the terminal is not switched")
         return session
 
@@ -127,7 +129,7 @@ class Teleop(ProgramTest):
         session.wait_for(r"vx \+1\.00 m/s")
         session.forget()
         session.wait_for(r"vx \+0\.00 m/s", 3)
-        time.sleep(0.5)
+        time.sleep(1.5)  # it brakes with 1 m/s2
         session.press("\x1b")
         self.assertEqual(session.wait(), 0)
         self.assert_restored(session)

@@ -129,8 +129,11 @@ class Teleoperation : public testing::Test {
   template <class Condition>
   static bool comes_true(const Condition& condition) {
     const auto end = Clock::now() + std::chrono::seconds(3);
-    while (!condition() && Clock::now() < end) std::this_thread::sleep_for(milliseconds(1));
-    return condition();
+    while (Clock::now() < end) {
+      if (condition()) return true;
+      std::this_thread::sleep_for(milliseconds(1));
+    }
+    return false;
   }
   bool has_applied(int64_t count) const {
     return comes_true([&] { return simulation_->stats().commands_applied >= count; });
