@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "command.h"
-#include "gloam/teleop.h"
+#include "gloam/drive/teleop.h"
 
 namespace gloam::cli {
 namespace {

@@ -6,8 +6,8 @@
 
 #include "command.h"
 #include "gloam/bridge.h"
+#include "gloam/drive/teleop.h"
 #include "gloam/log.h"
-#include "gloam/teleop.h"
 #include "gloam/view.h"
 #include "interrupt.h"
 

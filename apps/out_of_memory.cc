@@ -7,7 +7,7 @@
 #include <new>
 #include <string_view>
 
-#include "gloam/teleop.h"
+#include "gloam/drive/teleop.h"
 
 namespace gloam::cli {
 namespace {

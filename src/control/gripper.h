@@ -5,8 +5,8 @@
 #include <optional>
 
 #include "gloam/controller.h"
+#include "gloam/drive/robot_goals.h"
 #include "gloam/result.h"
-#include "gloam/robot_goals.h"
 #include "world/world.h"
 
 namespace gloam {

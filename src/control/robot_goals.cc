@@ -1,4 +1,4 @@
-#include "gloam/robot_goals.h"
+#include "gloam/drive/robot_goals.h"
 
 #include <fmt/format.h>
 

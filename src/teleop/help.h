@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "gloam/robot_goals.h"
+#include "gloam/drive/robot_goals.h"
 
 namespace gloam::teleop {
 

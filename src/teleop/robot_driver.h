@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "gloam/robot_goals.h"
+#include "gloam/drive/robot_goals.h"
 #include "gloam/simulation.h"
 #include "teleop/inputs.h"
 #include "teleop/jog.h"

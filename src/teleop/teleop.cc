@@ -1,4 +1,4 @@
-#include "gloam/teleop.h"
+#include "gloam/drive/teleop.h"
 
 #include <fmt/format.h>
 #include <poll.h>

@@ -9,7 +9,7 @@
 #include <csignal>
 #include <cstring>
 
-#include "gloam/teleop.h"
+#include "gloam/drive/teleop.h"
 
 namespace gloam {
 namespace teleop {

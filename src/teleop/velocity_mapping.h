@@ -2,7 +2,7 @@
 // Velocity goals from deflections.
 
 #include "gloam/command.h"
-#include "gloam/robot_goals.h"
+#include "gloam/drive/robot_goals.h"
 #include "teleop/inputs.h"
 
 namespace gloam::teleop {

@@ -1,6 +1,6 @@
 // Goals that robots of a scene accept.
 
-#include "gloam/robot_goals.h"
+#include "gloam/drive/robot_goals.h"
 
 #include <gtest/gtest.h>
 
