@@ -52,7 +52,7 @@ std::vector<std::string> help_lines(const std::string& robot, const RobotGoals& 
                   : fmt::format("Keys drive robot '{}' while they are held:", robot)};
   rows.insert(rows.begin(), {"keyboard", "gamepad", ""});
   for (const HelpRow& row : rows)
-    lines.push_back(fmt::format("  {:<20} {:<16} {}", row.keys, row.gamepad, row.meaning));
+    lines.push_back(fmt::format("  {:<22} {:<17} {}", row.keys, row.gamepad, row.meaning));
   return lines;
 }
 
