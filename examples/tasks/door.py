@@ -1,4 +1,4 @@
-"""A quadruped with an arm opens a door: it finds the lever, turns it, pulls, reaches behind the leaf and pushes.
+"""A quadruped with an arm opens a door: it finds the lever, turns it, leans forward, and pushes the leaf open.
 
 ./gloam python examples/tasks/door.py [--seeds 20] [--first 0] [--log door.mcap]
 """
@@ -14,8 +14,9 @@ from numpy.typing import ArrayLike
 
 import gloam
 
-HINGE = np.array([0.062, 0.7275, 0])  # from the middle of the lever's bar, as on the door's drawing [m]
+HINGE = np.array([0.112, 0.7275, 0])  # from the middle of the lever's bar, as on the door's drawing [m]
 AXLE = np.array([0, -0.0625, 0])  # of the lever, likewise
+LINK = 0.35  # thigh and calf [m]
 OPEN = 0.04  # of each finger [m]
 UP = np.array([0.0, 0.0, 1.0])
 
@@ -60,8 +61,8 @@ class Hand:
         self.robot.set_pose_goal((p + self.sag, quaternion(R)))
         self.sim.run_until(time=self.sim.time + 0.02)
 
-    def go(self, p: np.ndarray, R: np.ndarray, seconds: float, settle: int = 0) -> None:
-        start, first = self.p, self.R
+    def go(self, p: ArrayLike, R: np.ndarray, seconds: float, settle: int = 0) -> None:
+        p, start, first = np.asarray(p), self.p, self.R
         between = first.T @ R
         angle = np.arccos(np.clip((np.trace(between) - 1) / 2, -1, 1))
         axis = np.array([between[2, 1] - between[1, 2], between[0, 2] - between[2, 0], between[1, 0] - between[0, 1]])
@@ -91,35 +92,37 @@ def find_lever(sim: gloam.Simulation) -> np.ndarray:
     return (seen.min(axis=0) + seen.max(axis=0)) / 2 + [0.006, 0, 0]
 
 
+def lean(robot: gloam.Robot, forward: float, height: float) -> None:
+    """Moves the trunk over the standing feet: all legs bend so that the hips are `forward` of the feet and at `height`."""
+    knee = -2 * np.arccos(np.hypot(forward, height) / (2 * LINK))
+    thigh = np.arctan2(forward, height) - knee / 2
+    names = [f"{leg}_{joint}_joint" for leg in ("FL", "FR", "RL", "RR") for joint in ("thigh", "calf")]
+    robot.follow([thigh, knee] * 4, joints=names, profile="quintic", max_velocity=0.3, max_acceleration=1)
+
+
 def open_door(sim: gloam.Simulation) -> None:
     sim.run_until(time=1)
     hand = Hand(sim)
-    hand.go(hand.p + [-0.08, 0.22, 0.04], hand.R, 1.5)  # before the lever, as the plan of the house has it
+    hand.go(hand.p + [0, 0, 0.2], hand.R, 1)
+    hand.go([-0.21, -0.22, 1.0], turn(UP, -0.6), 1.5)  # before the lever, as the plan has it
     bar = find_lever(sim)
     hinge, axle = bar + HINGE, bar + AXLE
-    yaw = 0.2
     hand.grip(OPEN)
-    hand.go(bar - [0.13, 0.03, 0], facing(yaw), 2)
-    hand.go(bar + [0.008, 0, 0], facing(yaw), 1, settle=40)
+    hand.go(bar - [0.13, 0, 0], facing(-0.5), 2)
+    hand.go(bar + [0.008, 0, 0], facing(-0.5), 1, settle=30)
     hand.grip(0)
     for angle in np.linspace(0, 0.65, 50):  # the lever turns
         down = turn([-1, 0, 0], angle)
-        hand.at(axle + down @ (bar - axle), down @ facing(yaw))
+        hand.at(axle + down @ (bar - axle), down @ facing(-0.5))
     held, turned = hand.p, hand.R
-    for angle in np.linspace(0, 0.65, 150):  # the door follows
-        hand.at(hinge + turn(-UP, angle) @ (held - hinge), turn(UP, angle) @ turned)
-
-    def on_leaf(angle: float, radius: float, depth: float) -> np.ndarray:
-        """A point behind the outer face of the leaf, 0.08 m below the lever."""
-        return hinge + turn(-UP, angle) @ [depth, -radius, 0] - [0, 0, 0.08]
-
+    for angle in np.linspace(0, 0.45, 125):  # the door follows
+        hand.at(hinge + turn(UP, angle) @ (held - hinge), turn(UP, 0.5 * angle) @ turned)
     hand.grip(OPEN, 0.3)
-    hand.go(hand.p - 0.12 * hand.R[:, 0], hand.R, 0.5)
-    hand.go(on_leaf(0.55, 1.0, 0.0), facing(1.3), 0.6)
-    hand.robot.set_joint_goals({"gripper_joint": 0})
-    hand.go(on_leaf(0.45, 0.84, 0.12), facing(1.4), 0.5)
-    for angle in np.linspace(0.4, 1.3, 150):  # and is pushed open from inside
-        hand.at(on_leaf(angle, 0.80 - 0.15 * angle, 0.06), facing(1.5))
+    lean(hand.robot, 0.12, 0.48)
+    for s in np.linspace(0, 1, 250):  # the tips of the fingers slide along the leaf, off the lever, and push it open
+        radius, down = 0.70 - 0.32 * s, min(0.14, 0.6 * s)
+        on_leaf = np.array([-0.065, -radius, -down])
+        hand.at(hinge + turn(UP, 0.45 + 0.85 * s) @ on_leaf, facing(0.2 + 0.5 * s))
 
 
 def main() -> None:
