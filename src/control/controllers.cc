@@ -15,6 +15,7 @@
 #include "control/joint_controller.h"
 #include "control/operational_space.h"
 #include "control/parted_controller.h"
+#include "control/task_frame.h"
 #include "control/torque.h"
 #include "control/trot.h"
 #include "policy/policy_controller.h"
@@ -26,6 +27,10 @@ namespace {
 using OwnFactory = Result<std::unique_ptr<Controller>> (*)(const CompiledWorld&,
                                                            const RobotInstance&);
 
+using GoalsOf = Result<RobotGoals> (*)(const CompiledWorld&, const RobotInstance&);
+
+Result<RobotGoals> no_goals(const CompiledWorld&, const RobotInstance&) { return RobotGoals(); }
+
 Result<std::unique_ptr<Controller>> make_none(const CompiledWorld&, const RobotInstance&) {
   return std::unique_ptr<Controller>();
 }
@@ -34,21 +39,22 @@ Result<std::unique_ptr<Controller>> make_none(const CompiledWorld&, const RobotI
 struct OwnController {
   std::string_view name;
   OwnFactory make;
+  GoalsOf goals = no_goals;
   bool is_logged = false;  // ControllerTraits
 };
 constexpr OwnController kControllers[] = {
     {"none", make_none},
     {"torque", make_torque_controller},
     {"joint_position", make_joint_position_controller},
-    {"trot", make_trot_controller},
-    {"quadrotor", make_quadrotor_controller},
-    {"diff_drive", make_diff_drive_controller},
-    {"gripper", make_gripper_controller},
+    {"trot", make_trot_controller, trot_goals},
+    {"quadrotor", make_quadrotor_controller, quadrotor_goals},
+    {"diff_drive", make_diff_drive_controller, diff_drive_goals},
+    {"gripper", make_gripper_controller, gripper_goals},
     {"joint_velocity", make_joint_velocity_controller},
     {"joint_effort", make_joint_effort_controller},
-    {"ik", make_inverse_kinematics_controller},
-    {"osc", make_operational_space_controller},
-    {"policy", make_policy_controller, true},
+    {"ik", make_inverse_kinematics_controller, task_frame_goals},
+    {"osc", make_operational_space_controller, task_frame_goals},
+    {"policy", make_policy_controller, policy_goals, true},
 };
 
 struct RegisteredControllers {
@@ -95,6 +101,15 @@ bool has_logged_controls(const ControllerOptions& options) {
   return std::ranges::any_of(kControllers, [&](const OwnController& own) {
     return own.is_logged && own.name == options.type;
   });
+}
+
+Result<RobotGoals> controller_goals(const CompiledWorld& world, const RobotInstance& robot) {
+  const std::string& type = robot.options.controller.type;
+  for (const OwnController& own : kControllers)
+    if (type == own.name) return own.goals(world, robot);
+  RobotGoals goals;
+  if (has_controller_option(type, "goals")) goals.velocity.emplace();
+  return goals;
 }
 
 Result<std::unique_ptr<Controller>> make_controller(

@@ -2,6 +2,7 @@
 // The controllers that [robot.controller] type may name.
 
 #include "gloam/controller.h"
+#include "gloam/drive/robot_goals.h"
 #include "sim/loop/controller_slot.h"
 #include "world/world.h"
 
@@ -11,6 +12,9 @@ namespace gloam {
 /// the nearest valid one.
 Result<std::unique_ptr<Controller>> make_controller(
     const std::shared_ptr<const CompiledWorld>& world, const RobotInstance& robot);
+
+/// Goals that such a controller accepts. Errors: as for its creation.
+Result<RobotGoals> controller_goals(const CompiledWorld& world, const RobotInstance& robot);
 
 /// Whether a log contains the controls of this controller (ControllerTraits::is_logged).
 bool has_logged_controls(const ControllerOptions& options);

@@ -219,12 +219,13 @@ Result<std::unique_ptr<Controller>> make_gripper_controller(const CompiledWorld&
       std::move(found.fingers), std::move(found.joints), options.grip));
 }
 
-std::optional<FingerGoal> finger_goal(const mjModel& model, const RobotInstance& robot) {
-  const FingerFinder found(model, robot);
-  if (found.joints.empty()) return {};
+Result<RobotGoals> gripper_goals(const CompiledWorld& world, const RobotInstance& robot) {
+  const FingerFinder found(*world.model, robot);
+  if (found.joints.empty()) return RobotGoals();
   const FingerJoint& finger = found.joints.front();
-  return FingerGoal{
-      {finger.joint}, finger.closed, finger.open, robot.options.controller.grip.opening};
+  return RobotGoals{
+      .gripper = FingerGoal{
+          {finger.joint}, finger.closed, finger.open, robot.options.controller.grip.opening}};
 }
 
 }  // namespace gloam

@@ -2,7 +2,6 @@
 // Controller "gripper": opens and closes fingers together, with a limited force.
 
 #include <memory>
-#include <optional>
 
 #include "gloam/controller.h"
 #include "gloam/drive/robot_goals.h"
@@ -17,7 +16,7 @@ namespace gloam {
 Result<std::unique_ptr<Controller>> make_gripper_controller(const CompiledWorld& world,
                                                             const RobotInstance& robot);
 
-/// The first joint of such a gripper that takes goals. Empty: none has limits.
-std::optional<FingerGoal> finger_goal(const mjModel& model, const RobotInstance& robot);
+/// The first joint of such a gripper that takes goals; none if no joint has limits.
+Result<RobotGoals> gripper_goals(const CompiledWorld& world, const RobotInstance& robot);
 
 }  // namespace gloam

@@ -51,4 +51,9 @@ Result<TaskFrame> find_task_frame(const mjModel& model, const RobotInstance& rob
   return found;
 }
 
+Result<RobotGoals> task_frame_goals(const CompiledWorld& world, const RobotInstance& robot) {
+  GLOAM_TRY(TaskFrame task, find_task_frame(*world.model, robot));
+  return RobotGoals{.frame = std::move(task.name)};
+}
+
 }  // namespace gloam

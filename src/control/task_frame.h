@@ -3,6 +3,7 @@
 
 #include "control/ik/kinematics.h"
 #include "control/robot_joints.h"
+#include "gloam/drive/robot_goals.h"
 
 namespace gloam {
 
@@ -17,6 +18,9 @@ struct TaskFrame {
 /// Finds controller.task.frame of a robot. Errors: none given or no such frame, with the nearest
 /// name; no driven joint moves it; two actuators on one of its joints, or one with gear 0.
 Result<TaskFrame> find_task_frame(const mjModel& model, const RobotInstance& robot);
+
+/// The frame, for goals of its pose.
+Result<RobotGoals> task_frame_goals(const CompiledWorld& world, const RobotInstance& robot);
 
 /// Pose of a frame in the world, for a goal.
 Pose to_pose(const ik::Transform& X);

@@ -305,4 +305,9 @@ Result<std::unique_ptr<Controller>> make_trot_controller(const CompiledWorld& wo
   return std::unique_ptr<Controller>(std::move(trot));
 }
 
+// The controller has no limits of its own; its tests walk as fast as this.
+Result<RobotGoals> trot_goals(const CompiledWorld&, const RobotInstance&) {
+  return RobotGoals{.velocity = VelocityRanges{{-1, 1}, {-0.25, 0.25}, {-0.8, 0.8}}};
+}
+
 }  // namespace gloam

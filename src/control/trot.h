@@ -12,6 +12,7 @@
 #include <memory>
 
 #include "gloam/controller.h"
+#include "gloam/drive/robot_goals.h"
 #include "gloam/result.h"
 #include "world/world.h"
 
@@ -37,6 +38,7 @@ class TrotController : public Controller {
 /// quadruped with a torque motor on each joint.
 Result<std::unique_ptr<Controller>> make_trot_controller(const CompiledWorld& world,
                                                          const RobotInstance& robot);
+Result<RobotGoals> trot_goals(const CompiledWorld& world, const RobotInstance& robot);
 /// The same with other numbers.
 Result<std::unique_ptr<TrotController>> make_trot_controller(const mjModel& model,
                                                              const RobotInstance& robot,

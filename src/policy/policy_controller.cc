@@ -180,10 +180,13 @@ Result<std::unique_ptr<Controller>> make_policy_controller(const CompiledWorld& 
   return make_policy_controller(world, robot, load_onnx_network);
 }
 
-Result<std::array<std::array<double, 2>, 3>> policy_command_ranges(const CompiledWorld& world,
-                                                                   const RobotInstance& robot) {
+Result<RobotGoals> policy_goals(const CompiledWorld& world, const RobotInstance& robot) {
   GLOAM_TRY(const auto policy, find_policy(world, robot.options.controller, load_onnx_network));
-  return policy->spec.command_ranges;
+  const auto range = [&](size_t axis) {
+    const auto& [low, high] = policy->spec.command_ranges[axis];
+    return VelocityRange{low, high};
+  };
+  return RobotGoals{.velocity = VelocityRanges{range(0), range(1), range(2)}};
 }
 
 }  // namespace gloam

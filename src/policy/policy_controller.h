@@ -1,10 +1,10 @@
 #pragma once
 // The controller type "policy".
 
-#include <array>
 #include <optional>
 
 #include "gloam/controller.h"
+#include "gloam/drive/robot_goals.h"
 #include "gloam/joints/policy.h"
 #include "policy/network.h"
 #include "world/world.h"
@@ -18,10 +18,8 @@ Result<std::unique_ptr<Controller>> make_policy_controller(const CompiledWorld& 
 Result<std::unique_ptr<Controller>> make_policy_controller(const CompiledWorld& world,
                                                            const RobotInstance& robot);
 
-/// Range of each axis of the velocity goal (PolicySpec::command_ranges) of a robot with such a
-/// controller. Errors: as for Policy::load().
-Result<std::array<std::array<double, 2>, 3>> policy_command_ranges(const CompiledWorld& world,
-                                                                   const RobotInstance& robot);
+/// Velocities within the command ranges of the policy. Errors: as for Policy::load().
+Result<RobotGoals> policy_goals(const CompiledWorld& world, const RobotInstance& robot);
 
 /// State of a robot's controller if it is a policy.
 std::optional<PolicyState> state_of_policy(const Controller& controller);

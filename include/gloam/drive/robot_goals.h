@@ -15,6 +15,7 @@ namespace gloam {
 struct VelocityRange {
   double low = -std::numeric_limits<double>::infinity();
   double high = std::numeric_limits<double>::infinity();
+  static VelocityRange within(double most) { return {-most, most}; }
   bool is_zero() const { return low == 0 && high == 0; }  ///< the controller ignores the axis
 };
 /// Of a SetVelocityGoal, in the same frame and units.

@@ -115,4 +115,11 @@ Result<std::unique_ptr<Controller>> make_diff_drive_controller(const CompiledWor
       std::make_unique<DiffDriveController>(base, options.drive, 1 / options.rate.value()));
 }
 
+Result<RobotGoals> diff_drive_goals(const CompiledWorld&, const RobotInstance& robot) {
+  const DriveOptions& o = robot.options.controller.drive;
+  return RobotGoals{.velocity =
+                        VelocityRanges{VelocityRange::within(o.max_speed), VelocityRange::within(0),
+                                       VelocityRange::within(o.max_yaw_rate)}};
+}
+
 }  // namespace gloam

@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "gloam/controller.h"
+#include "gloam/drive/robot_goals.h"
 #include "gloam/result.h"
 #include "world/world.h"
 
@@ -14,5 +15,6 @@ namespace gloam {
 /// slowly than the goal. Errors: no wheels on one side.
 Result<std::unique_ptr<Controller>> make_diff_drive_controller(const CompiledWorld& world,
                                                                const RobotInstance& robot);
+Result<RobotGoals> diff_drive_goals(const CompiledWorld& world, const RobotInstance& robot);
 
 }  // namespace gloam

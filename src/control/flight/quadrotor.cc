@@ -82,4 +82,11 @@ Result<std::unique_ptr<Controller>> make_quadrotor_controller(const CompiledWorl
       std::move(vehicle), robot.options.controller.flight, gravity.norm()));
 }
 
+Result<RobotGoals> quadrotor_goals(const CompiledWorld&, const RobotInstance& robot) {
+  const FlightOptions& o = robot.options.controller.flight;
+  const VelocityRange level = VelocityRange::within(o.max_speed);
+  return RobotGoals{.velocity = VelocityRanges{level, level, VelocityRange::within(o.max_yaw_rate),
+                                               VelocityRange::within(o.max_climb)}};
+}
+
 }  // namespace gloam

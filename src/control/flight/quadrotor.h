@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "gloam/controller.h"
+#include "gloam/drive/robot_goals.h"
 #include "gloam/result.h"
 #include "world/world.h"
 
@@ -13,5 +14,6 @@ namespace gloam {
 /// free joint or without enough rotors.
 Result<std::unique_ptr<Controller>> make_quadrotor_controller(const CompiledWorld& world,
                                                               const RobotInstance& robot);
+Result<RobotGoals> quadrotor_goals(const CompiledWorld& world, const RobotInstance& robot);
 
 }  // namespace gloam
