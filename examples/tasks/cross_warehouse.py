@@ -1,4 +1,4 @@
-"""A mobile base crosses a warehouse among people and carts, and touches nobody and nothing.
+"""A mobile base crosses a warehouse among people and carts, and touches nobody.
 
     ./gloam python examples/tasks/cross_warehouse.py [--seed 1] [--count 10] [--level none] [--out results/cross_warehouse]
 
@@ -13,65 +13,16 @@ from pathlib import Path
 
 import gloam
 import numpy as np
+from dynamic_window import RADIUS, DynamicWindow
 from gloam.envs.free_space import FreeSpace
 from route import Points, Pursuit, bearing, shortest
 
-RADIUS, MARGIN = 0.18, 0.15  # of the base, and kept from everything [m]
-SPEED, BACK, TURN = 0.6, 0.3, 1.8  # largest commands [m/s, m/s, rad/s]
-NOISE, TREND = 0.07, 1.2  # m between scans that are errors; s for which motions continue
-BRAKE, TURN_UP = 0.8, 5.0  # used of the drive's accelerations [m/s², rad/s²]
 LIDAR_AT = np.array([-0.045, 0.0])  # in the base's frame [m]
-HORIZON, SIGHT, AHEAD, LIMIT = 2.0, 4.0, 1.2, 150.0  # s of prediction, m of obstacles and of pursuit, s for a run
-
-
-class DynamicWindow:
-    """Fox, Burgard and Thrun, "The dynamic window approach to collision avoidance" (1997).
-
-    Of the velocities that the drive can reach before the next scan, and from which it can brake before an obstacle, it
-    takes the one with the best sum of heading, clearance and speed.
-    """
-
-    def __init__(self, interval: float) -> None:
-        self._interval = interval  # between scans [s]
-        self._last = np.zeros(2)  # v, w
-        self._seen: Points | None = None  # the previous scan, in the world
-
-    def velocities(self, points: Points) -> Points:
-        """Of points in the world [m/s]: each came from the nearest point of the previous scan, or stands still."""
-        seen = self._seen if self._seen is not None else points
-        self._seen = points
-        moved = points[:, None] - seen[None]
-        moved = moved[np.arange(len(points)), np.argmin(np.linalg.norm(moved, axis=2), axis=1)]
-        length = np.linalg.norm(moved, axis=1, keepdims=True)
-        return np.where((length > NOISE) & (length < 2.0 * self._interval), moved / self._interval, 0.0)
-
-    def choose(self, obstacles: Points, moving: Points, target: Points) -> tuple[float, float]:
-        """Speed [m/s] and yaw rate [rad/s] towards `target` among `obstacles` that move, in the base's frame."""
-        reach = self._interval * np.array([BRAKE, TURN_UP])
-        low = np.maximum(self._last - reach, [-BACK, -TURN])
-        high = np.minimum(self._last + reach, [SPEED, TURN])
-        v, w = (grid.ravel() for grid in np.meshgrid(np.linspace(low[0], high[0], 7), np.linspace(low[1], high[1], 15)))
-        t = np.linspace(0.1, HORIZON, 14)[:, None]
-        turned = w * t
-        x = v * t * np.sinc(turned / (2 * np.pi)) * np.cos(turned / 2)  # chords of the arcs, (times, candidates)
-        y = v * t * np.sinc(turned / (2 * np.pi)) * np.sin(turned / 2)
-        there = obstacles + np.minimum(t, TREND)[..., None] * moving  # (times, points, 2)
-        gap = np.hypot(x[..., None] - there[:, None, :, 0], y[..., None] - there[:, None, :, 1]).min(axis=2) - RADIUS
-        now = np.linalg.norm(obstacles, axis=1).min() - RADIUS
-        hits = gap < min(MARGIN, 0.8 * now)
-        time_left = np.where(hits.any(axis=0), t[np.argmax(hits, axis=0), 0] - 0.1, np.inf)
-        admissible = np.abs(v) <= 2 * BRAKE * np.maximum(time_left - self._interval, 0)
-        heading = np.arctan2(target[1] - y[7], target[0] - x[7]) - turned[7]
-        score = 0.8 * np.cos(heading) + 0.7 * np.minimum(gap.min(axis=0), 0.6) + 0.8 * v
-        best = int(np.argmax(np.where(admissible | (v == 0), score, -np.inf)))
-        self._last = np.array([v[best], w[best]])
-        if not admissible.any():  # it brakes as hard as it can
-            self._last = np.array([low[0], 0.0])
-        return float(self._last[0]), float(self._last[1])
+SIGHT, AHEAD, LIMIT = 4.0, 1.2, 150.0  # m of obstacles, m of pursuit, s for a run
 
 
 class Patience:
-    """After 3 s in one place, as before a vehicle that waits too, the base drives back for 4 s to let the other pass."""
+    """After 3 s in one place, as before a vehicle that waits too, the base drives back for 4 s and lets it pass."""
 
     def __init__(self, position: Points) -> None:
         self._place, self._since, self._until = position, 0.0, 0.0
@@ -145,7 +96,8 @@ def cross(seed: int, level: str, out: Path) -> dict[str, float]:
                 nearest = min(nearest, people.nearest(base.pose.p))
         is_there = bool(np.linalg.norm(base.pose.p[:2] - route[-1]) <= 0.3)
         contacts = sim.metrics["base.collisions"]
-        return {"seed": seed, "there": is_there, "contacts": contacts, "nearest": nearest, "time": sim.time, "hash": sim.hash}
+        numbers = {"contacts": contacts, "nearest": nearest, "time": sim.time, "hash": sim.hash}
+        return {"seed": seed, "there": is_there, **numbers}
 
 
 def main() -> None:

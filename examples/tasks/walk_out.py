@@ -1,4 +1,4 @@
-"""A quadruped walks through a burning house: from the room with the fire to the farthest room, then out of the front door.
+"""A quadruped walks through a burning house: from the fire to the farthest room, then out of the front door.
 
     ./gloam python examples/tasks/walk_out.py [--seed 3] [--count 10] [--out results/walk_out]
 
