@@ -20,14 +20,12 @@ import numpy as np
 import gloam
 
 from ..legged.driver import Driver, load_network
+from ..legged.meter import SETTLE, TIMESTEP, Measures, Meter
 from ..legged.robot import CONTROL_PERIOD, ROOT, GaitChoice
 from . import ground
 from .robot import ROBOT
 
 POLICY = ROOT / "assets/policies/quadruped/policy.onnx"
-TIMESTEP = 0.002  # [s]
-SETTLE = 1.5  # after a change of command [s]
-GRAVITY = 9.81  # [m/s²]
 SOILS = ("dry_sand", "sandy_loam", "clayey_soil", "lean_clay", "snow", "mud", "lunar")
 WALKS = {  # commands of each kind of ground: vx, vy [m/s], yaw rate [rad/s]
     "flat": [(0.3, 0, 0), (0.5, 0, 0), (1.0, 0, 0), (1.5, 0, 0), (0, 0.3, 0), (0.5, 0, 1.0), (0, 0, 1.0)],
@@ -39,42 +37,12 @@ PUSHES = (0.5, 1.0, 1.5, 2.0, 2.5, 3.0)  # changes of the trunk's velocity [m/s]
 
 
 @dataclass
-class Walk:
-    """One run with a constant command; means over the time after SETTLE."""
+class Walk(Measures):
+    """One run with a constant command."""
 
     controller: str
     course: str
     command: tuple[float, float, float]
-    velocity_error: float  # of the mean velocity, heading frame [m/s]
-    yaw_rate_error: float  # of the mean yaw rate [rad/s]
-    distance: float  # of the whole run [m]
-    energy: float  # positive mechanical work of all joints after SETTLE [J]
-    walked: float  # distance after SETTLE [m]
-    weight: float  # [N]
-    fell: bool
-
-
-class Meter:
-    """Reads the robot's state before each step of a simulation."""
-
-    def __init__(self, memory: Any) -> None:
-        arrays = (memory.array(name) for name in ("qpos", "qvel", "actuator_force"))
-        self.qpos, self.qvel, self.force = arrays
-        self.start: float | None = None  # time from which means count [s]
-        self.sums = np.zeros(6)  # seconds, m, m, rad, J, m
-        self.distance, self.fell = 0.0, False
-
-    def read(self, time: float) -> None:
-        w, x, y, z = self.qpos[3:7]
-        heading = np.array([1 - 2 * (y * y + z * z), 2 * (x * y + w * z)])
-        heading /= max(float(np.linalg.norm(heading)), 1e-9)
-        self.fell = self.fell or bool(1 - 2 * (x * x + y * y) < 0.5)
-        velocity, speed = self.qvel[:2], float(np.linalg.norm(self.qvel[:2]))
-        self.distance += speed * TIMESTEP
-        if self.start is not None and time >= self.start and not self.fell:
-            work = float(np.maximum(self.force * self.qvel[6:18], 0).sum())
-            across = heading[0] * velocity[1] - heading[1] * velocity[0]
-            self.sums += np.array([1, heading @ velocity, across, self.qvel[5], work, speed]) * TIMESTEP
 
 
 def drive_by(driver: Driver) -> Callable[[Any, int], None]:
@@ -138,12 +106,7 @@ class Comparison:
         meter = session.meter
         meter.start = session.sim.time + SETTLE
         session.run(seconds)
-        time, ahead, across, turned, energy, walked = meter.sums
-        time = max(time, TIMESTEP)
-        weight = GRAVITY * float(session.sim.memory.array("body_mass").sum())
-        error = math.hypot(ahead / time - command[0], across / time - command[1])
-        numbers = (error, abs(turned / time - command[2]), meter.distance, energy, walked, weight)
-        return Walk(controller, course, command, *(float(number) for number in numbers), meter.fell)
+        return Walk(**asdict(meter.measures(command)), controller=controller, course=course, command=command)
 
     def recovers(self, controller: str, speed: float) -> list[bool]:
         """Whether it is still walking 3 s after a push in each of eight directions, at 0.5 m/s on a floor."""
