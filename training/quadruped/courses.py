@@ -16,14 +16,14 @@ def _box(spec: mujoco.MjSpec, centre: tuple[float, float], half: tuple[float, fl
         body.add_geom(type=mujoco.mjtGeom.mjGEOM_BOX, pos=[*centre, height / 2], size=[*half, height / 2])
 
 
-def _rough(spec: mujoco.MjSpec) -> None:
+def _rough(spec: mujoco.MjSpec, highest: float) -> None:
     """Boxes of 15 to 30 cm edge and random height, from 0.8 m around the start, 12 m in each direction."""
     rng = np.random.default_rng(20)
     edge = 0.24
     for i in range(-26, 27):
         for j in range(-26, 27):
             centre = (i * edge, j * edge)
-            height = rng.uniform(0, ROUGH_HEIGHT)
+            height = rng.uniform(0, highest)
             if np.hypot(*centre) > 0.8:
                 _box(spec, centre, (edge / 2, edge / 2), height)
 
@@ -41,11 +41,11 @@ def _stairs(spec: mujoco.MjSpec) -> None:
             _box(spec, (centre[0], centre[1]), (half[0], half[1]), STEP_HEIGHT * steps)
 
 
-def add(spec: mujoco.MjSpec, kind: str) -> None:
-    """Adds a course to a model. Raises ValueError: no such course."""
+def add(spec: mujoco.MjSpec, kind: str, rough_height: float = ROUGH_HEIGHT) -> None:
+    """Adds a course to a model; `rough_height`: of the highest boxes of rough ground [m]. Raises ValueError: no such course."""
     spec.worldbody.add_geom(type=mujoco.mjtGeom.mjGEOM_PLANE, size=[0, 0, 0.05])
     if kind == "rough":
-        _rough(spec)
+        _rough(spec, rough_height)
     elif kind == "stairs":
         _stairs(spec)
     elif kind != "flat":
