@@ -60,6 +60,31 @@ def drive_by(driver: Driver) -> Callable[[Any, int], None]:
     return drive
 
 
+class TrueVelocityDriver(Driver):
+    """Adds the integral of the error of the true velocity to the command, as an experiment: the trot controller reads its
+    true velocity, and the network does not."""
+
+    GAIN, LIMIT = 0.8, 0.4  # [1/s], [m/s, rad/s]
+
+    def reset(self) -> None:
+        super().reset()
+        self._integral = np.zeros(3)
+
+    def targets(self, qpos: np.ndarray, qvel: np.ndarray) -> np.ndarray:
+        w, x, y, z = qpos[3:7]
+        ahead = np.array([1 - 2 * (y * y + z * z), 2 * (x * y + w * z)])
+        ahead /= np.linalg.norm(ahead)
+        velocity = np.array([ahead @ qvel[:2], ahead[0] * qvel[1] - ahead[1] * qvel[0], qvel[5]])
+        command = self.command
+        if np.linalg.norm(command) > 0:
+            step = self.GAIN * CONTROL_PERIOD * (command - velocity)
+            self._integral = np.clip(self._integral + step, -self.LIMIT, self.LIMIT)
+        self.command = command + self._integral
+        targets = super().targets(qpos, qvel)
+        self.command = command
+        return targets
+
+
 class Session:
     """One simulation of one controller."""
 
@@ -91,12 +116,12 @@ class Session:
 class Comparison:
     """Makes sessions of both controllers and measures them."""
 
-    def __init__(self, network: Callable[[np.ndarray], np.ndarray], gait: GaitChoice, folder: Path) -> None:
-        self.network, self.gait, self.folder = network, gait, folder
+    def __init__(self, network: Callable[[np.ndarray], np.ndarray], gait: GaitChoice, folder: Path, driver: type[Driver] = Driver) -> None:
+        self.network, self.gait, self.folder, self.driver = network, gait, folder, driver
 
     def session(self, controller: str, course: str, pushes: str = "") -> Session:
         text = ground.scene(course, "trot" if controller == "trot" else "none", self.folder, TIMESTEP) + pushes
-        driver = Driver(ROBOT, self.network, self.gait) if controller == "policy" else None
+        driver = self.driver(ROBOT, self.network, self.gait) if controller == "policy" else None
         return Session(gloam.Scene.parse(text, self.folder), driver)
 
     def walk(self, controller: str, course: str, command: tuple[float, float, float], seconds: float) -> Walk:
@@ -147,6 +172,7 @@ def main() -> None:
     parser.add_argument("--seconds", type=float, default=8, help="of each walk")
     parser.add_argument("--courses", nargs="+", default=["flat", "rough", "stairs", *SOILS])
     parser.add_argument("--frequency", type=float, default=ROBOT.gait.frequency)
+    parser.add_argument("--true-velocity", action="store_true", help="correct the commands by the true velocity")
     parser.add_argument("--no-pushes", action="store_true")
     parser.add_argument("--json", type=Path)
     arguments = parser.parse_args()
@@ -155,7 +181,8 @@ def main() -> None:
     print("|---|---|---|---|---|---|---|---|---|")
     with tempfile.TemporaryDirectory() as folder:
         gait = GaitChoice(frequency=arguments.frequency)
-        comparison = Comparison(load_network(arguments.policy), gait, Path(folder))
+        driver = TrueVelocityDriver if arguments.true_velocity else Driver
+        comparison = Comparison(load_network(arguments.policy), gait, Path(folder), driver)
         for course in arguments.courses:
             commands = WALKS.get(course, WALKS["soil"])
             now = [comparison.walk(controller, course, command, arguments.seconds)
