@@ -118,7 +118,7 @@ def open_door(sim: gloam.Simulation) -> None:
     for angle in np.linspace(0, 0.45, 125):  # the door follows
         hand.at(hinge + turn(UP, angle) @ (held - hinge), turn(UP, 0.5 * angle) @ turned)
     hand.grip(OPEN, 0.3)
-    lean(hand.robot, 0.14, 0.47)
+    lean(hand.robot, 0.17, 0.46)
     for s in np.linspace(0, 1, 250):  # the tips of the fingers slide along the leaf, off the lever, and push it open
         radius, down = 0.70 - 0.32 * s, min(0.14, 0.6 * s)
         on_leaf = np.array([-0.065, -radius, -down])
