@@ -380,6 +380,7 @@ class Simulation:
                 self._core.close()
             self._drives.clear()
         finally:
+            self._renderer = None  # its memory must not wait for the garbage collector, which finds cycles late
             if self._other is not None:
                 self._other.close()
 

@@ -218,3 +218,19 @@ free(at)
 {use}
 """
     assert "heap-use-after-free" in run_python(code, expect=1).stderr
+
+
+@pytest.mark.skipif("asan" in os.environ.get("LD_PRELOAD", ""), reason="the sanitizer keeps freed memory")
+def test_close_frees_the_renderer(examples: Path) -> None:
+    """Without the garbage collector: a loop over seeds must not keep the renderers of closed simulations."""
+    world = gloam.Scene(examples / "tasks" / "pick.toml").compile()
+    sizes = []
+    gc.disable()
+    try:
+        for seed in range(5):
+            with gloam.Simulation(world, seed=seed) as sim:
+                sim.cameras["above"].render(("depth",), width=64, height=48)
+            sizes.append(int(Path("/proc/self/statm").read_text().split()[1]) * os.sysconf("SC_PAGE_SIZE") / 2**20)
+    finally:
+        gc.enable()
+    assert sizes[-1] - sizes[1] < 150, f"{sizes} MiB"  # with their renderers it grows by 130 MiB each
