@@ -79,4 +79,4 @@ if __name__ == "__main__":
         "hover_gusts_8": hover_error({"wind": 8, "gusts": 0.15}),
         "hover_gusts_12": hover_error({"wind": 12, "gusts": 0.2}),
         "hover_power": hover_power(),
-    }, indent=1))
+    }))
