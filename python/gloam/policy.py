@@ -233,7 +233,7 @@ class PolicyDriver:
 
     @property
     def inputs(self) -> dict[str, dict[str, NDArray[np.float32]]]:
-        """The latest inputs of all networks: inputs["NETWORK"]["INPUT"]; empty before the first step. A policy of one
+        """The latest inputs, by the names of network and input; empty before the first step. A policy of one
         network names it "policy"."""
         state = self._state()
         if state is None:
