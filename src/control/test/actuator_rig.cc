@@ -3,29 +3,25 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "scene/files/mujoco_guard.h"
+#include "robot_world.h"
 #include "trot_robots.h"
 
 namespace gloam {
 
 std::shared_ptr<CompiledWorld> wheel_world(const Wheel& wheel, const RobotOptions& options) {
-  install_mujoco_handler();
-  auto world = std::make_shared<CompiledWorld>();
-  world->model = compile_text(fmt::format(
-      R"(<mujoco><option timestep="{}" gravity="0 0 0"/><worldbody><body name="wheel">
+  RobotOptions named = options;
+  named.name = "rig";
+  auto world = make_robot_world(
+      fmt::format(
+          R"(<mujoco><option timestep="{}" gravity="0 0 0"/><worldbody><body name="wheel">
            <joint name="wheel" axis="0 0 1" armature="{}"/>
            <inertial pos="0 0 0" mass="1" diaginertia="{} {} {}"/></body></worldbody>
          <actuator>{}</actuator>
          <keyframe><key qpos="0" qvel="{}"/></keyframe></mujoco>)",
-      wheel.timestep, wheel.armature, wheel.inertia, wheel.inertia, wheel.inertia, wheel.actuator,
-      wheel.speed));
+          wheel.timestep, wheel.armature, wheel.inertia, wheel.inertia, wheel.inertia,
+          wheel.actuator, wheel.speed),
+      std::move(named));
   world->initial_key = 0;
-  RobotInstance robot;
-  robot.name = "rig";
-  robot.root_body = 1;
-  robot.options = options;
-  robot.options.name = robot.name;
-  world->robots.push_back(std::move(robot));
   return world;
 }
 

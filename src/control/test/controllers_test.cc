@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "scene/files/mujoco_guard.h"
+#include "robot_world.h"
 #include "sim/loop/simulator.h"
 #include "trot_robots.h"
 
@@ -21,19 +21,7 @@ const char* const kArm = R"(<mujoco><option timestep="0.002" gravity="0 0 0"/><w
     <general name="w" joint="w" gainprm="4" forcerange="-1 1"/></actuator></mujoco>)";
 
 std::shared_ptr<CompiledWorld> make_world(ControllerOptions options) {
-  install_mujoco_handler();
-  char error[500] = "";
-  auto world = std::make_shared<CompiledWorld>();
-  const SpecPtr spec(mj_parseXMLString(kArm, nullptr, error, sizeof(error)));
-  EXPECT_TRUE(spec) << error;
-  world->model.reset(mj_compile(spec.get(), nullptr));
-  EXPECT_TRUE(world->model);
-  RobotInstance robot;
-  robot.name = "arm";
-  robot.root_body = 1;
-  robot.options.controller = std::move(options);
-  world->robots.push_back(robot);
-  return world;
+  return make_robot_world(kArm, {.name = "arm", .controller = std::move(options)});
 }
 
 std::unique_ptr<Simulator> start(const std::shared_ptr<CompiledWorld>& world) {

@@ -54,7 +54,7 @@ TEST_P(DiffDrive, KeepsItsLimits) {
                                           driven({.max_speed = 0.3, .max_acceleration = 0.5})));
   ASSERT_TRUE(sim->post({.what = SetVelocityGoal{Robot{0, 0}, 5, 0, 0}}).ok());
   ASSERT_TRUE(sim->step(200).ok());
-  // Of the wheel: MuJoCo's soft tyres creep while they pull.
+  // The wheel's speed, because MuJoCo's soft tyres creep while they pull.
   EXPECT_NEAR(0.07 * sim->latest()[Joint{1}].velocity(), 0.2, 0.03) << "0.5 m/s2 for 0.4 s";
   ASSERT_TRUE(sim->step(800).ok());
   EXPECT_NEAR(base_of(*sim).velocity.x, 0.3, 0.01);

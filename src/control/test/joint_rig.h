@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "control/controllers.h"
-#include "scene/files/mujoco_guard.h"
+#include "robot_world.h"
 #include "sim/loop/simulator.h"
 
 namespace gloam {
@@ -35,19 +35,7 @@ inline constexpr const char* kPendulums =
     <velocity name="v" joint="v" kv="20"/></actuator></mujoco>)";
 
 inline std::shared_ptr<CompiledWorld> arm_world(const char* xml, ControllerOptions options) {
-  install_mujoco_handler();
-  char error[500] = "";
-  auto world = std::make_shared<CompiledWorld>();
-  const SpecPtr spec(mj_parseXMLString(xml, nullptr, error, sizeof(error)));
-  EXPECT_TRUE(spec) << error;
-  world->model.reset(mj_compile(spec.get(), nullptr));
-  EXPECT_TRUE(world->model);
-  RobotInstance robot;
-  robot.name = "arm";
-  robot.root_body = 1;
-  robot.options.controller = std::move(options);
-  world->robots.push_back(robot);
-  return world;
+  return make_robot_world(xml, {.name = "arm", .controller = std::move(options)});
 }
 
 /// A paused simulation with the controllers of its scene.

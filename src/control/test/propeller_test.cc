@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "actuator_rig.h"
-#include "scene/files/mujoco_guard.h"
+#include "robot_world.h"
 #include "trot_robots.h"
 
 namespace gloam {
@@ -46,21 +46,17 @@ struct Stand {
 };
 
 std::shared_ptr<CompiledWorld> stand_world(const Stand& stand, const RobotOptions& options) {
-  install_mujoco_handler();
-  auto world = std::make_shared<CompiledWorld>();
-  world->model = compile_text(fmt::format(
-      R"(<mujoco><option timestep="{}" gravity="0 0 0" wind="0 0 {}"/><worldbody><body name="stand">
+  RobotOptions named = options;
+  named.name = "rig";
+  auto world = make_robot_world(
+      fmt::format(
+          R"(<mujoco><option timestep="{}" gravity="0 0 0" wind="0 0 {}"/><worldbody><body name="stand">
            <joint name="slide" type="slide" axis="0 0 1"/><geom size=".1" mass="{}"/>
            <site name="hub" pos="0.3 0 0.1"/></body></worldbody>
          <actuator>{}</actuator><keyframe><key qpos="0" qvel="{}"/></keyframe></mujoco>)",
-      stand.timestep, stand.wind, stand.mass, stand.actuator, stand.speed));
+          stand.timestep, stand.wind, stand.mass, stand.actuator, stand.speed),
+      std::move(named));
   world->initial_key = 0;
-  RobotInstance robot;
-  robot.name = "rig";
-  robot.root_body = 1;
-  robot.options = options;
-  robot.options.name = robot.name;
-  world->robots.push_back(std::move(robot));
   return world;
 }
 

@@ -4,22 +4,21 @@
 
 #include "control/controllers.h"
 #include "scene/files/mujoco_guard.h"
+#include "trot_robots.h"
 
 namespace gloam {
 
-std::shared_ptr<CompiledWorld> make_robot_world(const char* mjcf, const RobotOptions& options) {
+std::shared_ptr<CompiledWorld> make_robot_world(const std::string& mjcf, RobotOptions options) {
   install_mujoco_handler();
-  char error[500] = "";
   auto world = std::make_shared<CompiledWorld>();
-  const SpecPtr spec(mj_parseXMLString(mjcf, nullptr, error, sizeof(error)));
-  EXPECT_TRUE(spec) << error;
-  world->model.reset(mj_compile(spec.get(), nullptr));
-  EXPECT_TRUE(world->model) << mjs_getError(spec.get());
+  world->model = compile_text(mjcf);
+  EXPECT_TRUE(world->model);
+  if (options.name.empty()) options.name = "robot";
   RobotInstance robot;
-  robot.name = "robot";
+  robot.name = options.name;
   robot.root_body = 1;
-  robot.options = options;
-  world->robots.push_back(robot);
+  robot.options = std::move(options);
+  world->robots.push_back(std::move(robot));
   return world;
 }
 

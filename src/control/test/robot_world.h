@@ -2,6 +2,7 @@
 // A World with one robot from MJCF text, and a simulation of it with the robot's controllers.
 
 #include <memory>
+#include <string>
 
 #include "gloam/snapshot.h"
 #include "sim/loop/simulator.h"
@@ -9,8 +10,9 @@
 
 namespace gloam {
 
-/// The robot is the tree of body 1; its name is "robot", without a prefix.
-std::shared_ptr<CompiledWorld> make_robot_world(const char* mjcf, const RobotOptions& options);
+/// The robot is the tree of body 1, without a prefix; its name is that of its options, "robot" if
+/// they have none.
+std::shared_ptr<CompiledWorld> make_robot_world(const std::string& mjcf, RobotOptions options);
 
 /// A lockstep simulation of the World with all controllers of its robot, ready to step.
 std::unique_ptr<Simulator> start_robot(const std::shared_ptr<const CompiledWorld>& world);
