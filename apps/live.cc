@@ -21,7 +21,7 @@ Status play_again(const LiveRun& run, const LiveCommand& command) {
   return player->seek(0);
 }
 
-/// What serves a live run; null = not requested.
+/// Servers of a live run; null = not requested.
 struct LiveParts {
   std::unique_ptr<ViewServer> page;
   std::unique_ptr<LogStream> log;

@@ -118,7 +118,7 @@ class ComTask:
 
 @dataclass
 class DampingTask:
-    """Regulates all velocities, except those of free joints, to zero. cost: one for all degrees of freedom, or (nv,)."""
+    """Regulates the velocities of all joints except free joints to zero. cost: one for all degrees of freedom, or (nv,)."""
 
     cost: ArrayLike = 1.0
 

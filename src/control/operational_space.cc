@@ -14,7 +14,7 @@ namespace {
 using ik::MatrixXd;
 using ik::Vector3d;
 using ik::VectorXd;
-// Of a task with up to 6 rows: position, then orientation, world axes.
+// A task has up to 6 rows: position, then orientation, world axes.
 using TaskVector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 6, 1>;
 using TaskMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 6, 6>;
 

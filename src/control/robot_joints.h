@@ -24,7 +24,7 @@ struct DrivenJoint {
   bool takes_target = false;  ///< position servo: its control is the joint's angle times the gear
   bool takes_velocity = false;  ///< velocity servo: likewise the joint's velocity
   double gain = 1;              ///< actuator force per unit of control
-  /// Of a servo's force, beside the control's: constant, per length, per velocity
+  /// Terms of a servo's force that do not depend on the control: constant, per length, per velocity
   double bias[3] = {};
   double lowest, highest;              ///< limits of the control; ±infinity when it has none
   double force_lowest, force_highest;  ///< limits of the actuator's force; ±infinity when none

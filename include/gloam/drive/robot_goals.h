@@ -18,7 +18,7 @@ struct VelocityRange {
   static VelocityRange within(double most) { return {-most, most}; }
   bool is_zero() const { return low == 0 && high == 0; }  ///< the controller ignores the axis
 };
-/// Of a SetVelocityGoal, in the same frame and units.
+/// Ranges of the components of a SetVelocityGoal, in its frame and units.
 struct VelocityRanges {
   VelocityRange vx, vy, yaw_rate;
   VelocityRange vz = {0, 0};

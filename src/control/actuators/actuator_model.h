@@ -56,7 +56,8 @@ using ActuatorModelMaker = Result<std::unique_ptr<ActuatorModel>> (*)(const Actu
 Result<int64_t> whole_steps(double seconds, Rational timestep, const std::string& what,
                             const SourceLoc& loc);
 
-/// The value at x of rows (x, y) with rising x; outside of them that of the nearest row.
+/// Interpolates rows (x, y) with rising x; outside of their range, returns the y of the nearest
+/// row.
 double interpolate(std::span<const std::array<double, 2>> rows, double x);
 
 /// Voltage of the battery for which the values of motors hold [V].

@@ -25,7 +25,7 @@ class ActuatorNetwork {
 using ActuatorNetworkLoader =
     std::function<Result<std::unique_ptr<ActuatorNetwork>>(const std::filesystem::path&)>;
 
-/// Reads an ONNX file. Errors: those of load_onnx_network(); several inputs or outputs.
+/// Reads an ONNX file. Errors: as for load_onnx_network(); several inputs or outputs.
 Result<std::unique_ptr<ActuatorNetwork>> load_actuator_network(const std::filesystem::path& file);
 
 }  // namespace gloam

@@ -7,8 +7,8 @@
 
 namespace gloam {
 
-/// Null: the robot has no [[robot.actuator]]. Errors: of find_drives(), with the location in the
-/// scene file; those of the models come from ActuatorLayer::begin(), which has the timestep.
+/// Null: the robot has no [[robot.actuator]]. Errors: as for find_drives(), with the location in
+/// the scene file. ActuatorLayer::begin(), which has the timestep, returns errors of the models.
 Result<std::unique_ptr<ActuatorLayer>> make_actuators(
     const CompiledWorld& world, const RobotInstance& robot,
     ActuatorNetworkLoader load_network = load_actuator_network);

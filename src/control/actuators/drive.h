@@ -62,8 +62,8 @@ struct Drive {
 
 /// The drives of a robot, in the order of its joints and then of its actuators at sites: of each
 /// the last [[robot.actuator]] that matches its name. Errors, with the location of the table: it
-/// matches nothing; a joint has no actuator or several; an actuator is no motor and no servo, or
-/// has activations; options that a servo or motor does not have.
+/// matches nothing; a joint has no actuator or several; an actuator is neither a motor nor a servo,
+/// or has activations; options that a servo or motor does not have.
 Result<std::vector<DriveSetup>> find_drives(const mjModel& model, const RobotInstance& robot);
 
 }  // namespace gloam

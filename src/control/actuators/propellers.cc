@@ -4,8 +4,7 @@
 // in the advance ratio J = v / (n D): thrust = k_T w² (1 − J / J_T), torque = k_Q w² (1 − J / J_Q)
 // with k_T = C_T ρ D⁴ / 4π² and k_Q = C_P ρ D⁵ / 8π³. Shaft: I dw/dt = k (i − i_0) − torque;
 // winding: i = (U − k w) / R with 0 <= U <= the supply's voltage and |i| <= the current limit.
-// Within these limits the controller lets the speed approach that of the commanded thrust
-// exponentially.
+// Within these limits the speed approaches the speed of the commanded thrust exponentially.
 
 #include <fmt/format.h>
 
@@ -128,8 +127,7 @@ class Propellers final : public ActuatorModel {
   }
 
  private:
-  // Thrust and torque are those of the mean speed of the step, so that the energy of the shaft is
-  // in balance with them.
+  // The mean speed of the step gives thrust and torque, so that the energy of the shaft balances.
   static void turn(Shaft& shaft, Drive& drive, double dt) {
     const ActuatorOptions& o = drive.options();
     shaft.supply += -std::expm1(-dt / kVoltageTime) * (drive.supply - shaft.supply);

@@ -185,7 +185,7 @@ bool SimLoop::publish_due() {
   return all;
 }
 
-// Of Commands from the scene, a log or a run that is repeated.
+// Applies Commands from the scene, a log or a run that is repeated.
 void SimLoop::apply_unprepared(const Command& command) {
   auto prepared = prepare_input(stepper_->shared_world(), command, timestep_, make_controller_);
   if (!prepared.ok()) {

@@ -30,7 +30,7 @@ class SimLoop {
           ControllerMaker make_controller = {});
 
   Status add_controller(int robot, std::unique_ptr<Controller> controller, Rational rate);
-  /// Of a robot; null = it has none.
+  /// The controller of a robot; null = it has none.
   const Controller* controller_of(int robot) const {
     return controllers_[static_cast<size_t>(robot)].now.controller.get();
   }
@@ -92,7 +92,7 @@ class SimLoop {
   void exchange_controllers(NextWorld* next, const Correspondence& same);
   bool take_step();
   bool apply_commands();
-  /// Those whose controls are inputs of a log, or the others.
+  /// Runs the controllers whose controls are inputs of a log, or all others.
   void run_controllers(bool logged);
   bool has_logged_controllers() const;
   void run_hook();

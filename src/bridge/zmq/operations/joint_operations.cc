@@ -19,7 +19,7 @@ Status post_to(const Call& call, const RobotInfo& robot, decltype(Command::what)
   return {};
 }
 
-// Joints by full names or those of the robot's model; none = all hinges and slides.
+// Joints by their full names or their names in the robot's model; none = all hinges and slides.
 Result<std::vector<Joint>> named_joints(const Call& call, const World& world,
                                         const RobotInfo& robot) {
   std::vector<Joint> joints;
