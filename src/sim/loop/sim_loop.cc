@@ -57,8 +57,8 @@ void SimLoop::switch_controller(ControllerSlot* next) {
   const int robot = next->robot;
   RobotControl& control = control_of(robot);
   const auto type = [&](const ControllerSlot& slot) -> const std::string& {
-    const RobotInstance& instance = stepper_->world().robots[static_cast<size_t>(robot)];
-    return slot.options != nullptr ? slot.options->type : instance.options.controller.type;
+    if (const ControllerOptions* options = slot.options.get()) return options->type;
+    return stepper_->world().robots[static_cast<size_t>(robot)].options.controller.type;
   };
   if (type(*next) != type(control.now)) stepper_->joints().reset(robot);
   start_controller(next, control.now.controller.get());
