@@ -90,6 +90,7 @@ class PolicySpec:
     history_start: str  # initial history: "repeat" the first observation, or "zeros"
     gait_period: float  # [s], of the terms phase, sin_phase, cos_phase
     command_ranges: dict[str, tuple[float, float]]  # of vx, vy [m/s], yaw_rate [rad/s]; infinite = no limit
+    velocity_feedback: float  # integral gain of the velocity's error that is added to commands [1/s]; 0 = none
     model_joints: dict[str, str]  # names in the model where they are others
     networks: tuple[PolicyNetwork, ...]  # in the order in which they run; the last one gives the actions
 

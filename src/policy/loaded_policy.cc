@@ -48,6 +48,7 @@ PolicyInfo describe_policy(const Policy& policy) {
   info.starts_with_zeros = spec.starts_with_zeros;
   info.gait_period = spec.gait.period;
   info.command_ranges = spec.command_ranges;
+  info.velocity_feedback = spec.velocity_feedback;
   for (size_t i = 0; i < policy.networks.size(); ++i)
     info.networks.push_back(describe_network(policy, i));
   return info;

@@ -8,6 +8,7 @@
 #include "policy/observer.h"
 #include "policy/policy_robot.h"
 #include "policy/policy_spec.h"
+#include "policy/velocity_feedback.h"
 
 namespace gloam {
 
@@ -77,6 +78,7 @@ class PolicyRunner {
   std::vector<Observer> observers_;
   RobotState state_;
   GaitClock clock_;
+  VelocityFeedback feedback_;
   int64_t period_ = 0;
   std::vector<double> action_, previous_action_, targets_;
 };

@@ -131,14 +131,19 @@ Status PolicyRobot::find_base(const TermBinding& binding) {
     base_dof_ = model.jnt_dofadr[free];
     return {};
   }
+  const auto missing = [&](std::string use, std::string remedy) {
+    return Error{ErrorKind::kUnsupported,
+                 fmt::format("the policy {}, but robot '{}' has no floating base", use,
+                             binding.robot->name),
+                 {},
+                 "set base = \"free\" in its [[robot]], or " + remedy};
+  };
+  if (binding.spec->velocity_feedback > 0)
+    return missing("has a velocity_feedback", "remove it from the policy's settings");
   for (const NetworkSpec& network : binding.spec->networks)
     for (const ObservationPart& part : network.parts)
       if (part.sensor.empty() && part.term->needs_base())
-        return Error{ErrorKind::kUnsupported,
-                     fmt::format("the policy observes '{}', but robot '{}' has no floating base",
-                                 part.kind->name, binding.robot->name),
-                     {},
-                     "set base = \"free\" in its [[robot]], or give the term a sensor"};
+        return missing(fmt::format("observes '{}'", part.kind->name), "give the term a sensor");
   return {};
 }
 

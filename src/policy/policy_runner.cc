@@ -70,6 +70,7 @@ bool PolicyRunner::take_over(const PolicyRunner& other) {
       std::ranges::copy(other.observation(i, k), networks_[i]->input(k).begin());
   outputs_ = other.outputs_;
   clock_ = other.clock_;
+  feedback_ = other.feedback_;
   period_ = other.period_;
   action_ = other.action_;
   previous_action_ = other.previous_action_;
@@ -82,6 +83,7 @@ void PolicyRunner::reset() {
   for (auto& network : outputs_)
     for (auto& output : network) std::ranges::fill(output, 0.0f);
   clock_ = {};
+  feedback_.reset();
   period_ = 0;
   std::ranges::fill(action_, 0.0);
   std::ranges::fill(previous_action_, 0.0);
@@ -144,7 +146,7 @@ PolicyFault PolicyRunner::act(const mjModel& model, const mjData& data,
   inputs.spec = &spec;
   inputs.gait = &gait_;
   inputs.robot = &state_;
-  inputs.command = clipped;
+  inputs.command = feedback_.correct(clipped, state_, spec);
   inputs.action = action_;
   inputs.previous_action = previous_action_;
   inputs.clock = &clock_;

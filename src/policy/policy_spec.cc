@@ -16,10 +16,12 @@ constexpr std::string_view kPolicyKeys[] = {"rate",         "joints",
                                             "torque_limit", "history_start",
                                             "gait_period",  "command_ranges",
                                             "gait",         "feet",
-                                            "history",      "history_order"};
+                                            "history",      "history_order",
+                                            "velocity_feedback"};
 constexpr std::string_view kNetworkKeys[] = {"name",          "file",  "every",      "history",
                                              "history_order", "prime", "observation"};
 constexpr int kLongestHistory = 1000, kLongestPeriod = 10'000;
+constexpr double kStrongestFeedback = 10;  // [1/s]; beyond it a stride is the faster process
 constexpr size_t kMostNetworks = 16, kMostJoints = 1000;
 
 constexpr std::string_view kOrders[] = {"oldest_first", "newest_first"};
@@ -89,6 +91,8 @@ void read_policy(const toml::table& policy, Settings* s, PolicySpec* spec) {
   spec->rate = s->number(policy, "rate", spec->rate, {.min = 0, .max = 1e5, .open = true});
   spec->starts_with_zeros = s->choice(policy, "history_start", kStarts) == 1;
   read_command_ranges(policy, s, spec);
+  spec->velocity_feedback =
+      s->number(policy, "velocity_feedback", 0, {.min = 0, .max = kStrongestFeedback});
   read_model_joints(policy, s, spec);
   spec->feet = s->names(policy, "feet");
   if (const toml::table* gait = s->table(policy, "gait")) read_gait(*gait, s, &spec->gait);
@@ -195,7 +199,7 @@ Result<PolicySpec> build_policy_spec(const toml::table& settings, const std::str
   } else {
     NetworkSpec network;
     read_histories(*policy, &s, &network);
-    if (s.ok()) read_observations(*observation, &s, spec, &network);
+    if (s.ok() && has_terms) read_observations(*observation, &s, spec, &network);
     spec.networks.push_back(std::move(network));
   }
   if (!s.ok()) return s.status().error();

@@ -63,6 +63,8 @@ struct PolicySpec {
   /// vx, vy [m/s], yaw rate [rad/s]
   std::array<std::array<double, 2>, 3> command_ranges = {
       {{-kUnlimited, kUnlimited}, {-kUnlimited, kUnlimited}, {-kUnlimited, kUnlimited}}};
+  /// Gain of the integral of the velocity's error that is added to commands [1/s]; 0 = none
+  double velocity_feedback = 0;
   std::map<std::string, std::string> model_joints;  ///< names in the model where they differ
   GaitOptions gait;
   std::vector<std::string> feet;  ///< geoms or bodies of the model

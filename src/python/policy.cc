@@ -53,9 +53,9 @@ nb::dict info_of(const LoadedPolicy& policy) {
   const PolicyInfo& info = policy.info();
   nb::dict made, renamed, ranges;
   for (const auto& [name, model_name] : info.model_joints) renamed[name.c_str()] = model_name;
-  const char* const axes[] = {"vx", "vy", "yaw_rate"};
-  for (size_t i = 0; i < info.command_ranges.size(); ++i)
-    ranges[axes[i]] = range_of(info.command_ranges[i]);
+  ranges["vx"] = range_of(info.command_ranges[0]);
+  ranges["vy"] = range_of(info.command_ranges[1]);
+  ranges["yaw_rate"] = range_of(info.command_ranges[2]);
   nb::list networks;
   for (const PolicyNetworkInfo& network : info.networks) networks.append(network_of(network));
   made["rate"] = info.rate;
@@ -70,6 +70,7 @@ nb::dict info_of(const LoadedPolicy& policy) {
   made["history_start"] = info.starts_with_zeros ? "zeros" : "repeat";
   made["gait_period"] = info.gait_period;
   made["command_ranges"] = ranges;
+  made["velocity_feedback"] = info.velocity_feedback;
   made["networks"] = networks;
   return made;
 }

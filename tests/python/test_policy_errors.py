@@ -74,6 +74,14 @@ def test_actuators_that_policies_do_not_drive(tmp_path: Path, actuators: str, sa
         held_policy(tmp_path).attach(sim, "bot")
 
 
+def test_velocity_feedback_needs_a_floating_base(tmp_path: Path) -> None:
+    scene = write_scene(tmp_path)
+    model = tmp_path / "leg.xml"
+    model.write_text(model.read_text().replace('<freejoint name="root"/>', ""))
+    with gloam.load(scene) as sim, pytest.raises(gloam.Error, match="a velocity_feedback, but robot 'bot' has no floating"):
+        held_policy(tmp_path, extra="velocity_feedback = 0.5\n").attach(sim, "bot")
+
+
 def test_a_rate_that_no_number_of_steps_gives(tmp_path: Path) -> None:
     with (
         gloam.load(write_scene(tmp_path), timestep=0.003) as sim,

@@ -126,6 +126,7 @@ def test_patterns_exact_names_and_later_lines_win(tmp_path: Path) -> None:
         ("[policy]", "[polices]\n[policy]", "has no 'polices'.*did you mean 'policy'"),
         ("action_scale = 0.5", 'action_scale = 0.5\nhistory_start = "ones"', "history_start"),
         ("action_scale = 0.5", "action_scale = 0.5\ncommand_ranges = { vz = 1 }", "command_ranges has no 'vz'"),
+        ("action_scale = 0.5", "action_scale = 0.5\nvelocity_feedback = -1", "velocity_feedback is -1"),
         ("action_scale = 0.5", 'action_scale = 0.5\nmodel_joints = { ankle = "a" }', "model_joints has no 'ankle'"),
         ("action_scale = 0.5", "action_scale = = 0.5", "is not valid TOML"),
     ],

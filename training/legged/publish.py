@@ -27,7 +27,7 @@ action_clip = {clip:g}
 torque_limit = {torque}  # N m
 history_start = "repeat"
 command_ranges = {{ vx = {vx}, vy = {vy}, yaw_rate = {yaw_rate} }}  # m/s, m/s, rad/s
-
+{feedback}
 [policy.gait]
 {gait}
 pacing_offset = true
@@ -75,6 +75,7 @@ def policy_toml(settings: Settings) -> str:
         vx=list(commands.vx),
         vy=list(commands.vy),
         yaw_rate=list(commands.yaw_rate),
+        feedback=f"velocity_feedback = {settings.velocity_feedback:g}  # 1/s\n" if settings.velocity_feedback else "",
         gait="\n".join(f"{name} = {value:g}" for name, value in asdict(robot.gait).items()),
         parameters=", ".join(f'"{name}"' for name in GAIT_PARAMETERS),
     )

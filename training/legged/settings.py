@@ -102,6 +102,7 @@ class Settings:
     stages: tuple[Stage, ...]
     fall_height: float  # of the free body's origin above the ground: a fall [m]
     fall_penalty: float = 1.0
+    velocity_feedback: float = 0.0  # of the published policy (docs/policies.md), not of the training [1/s]
     seed: int = 1
     timestep: float = 0.004  # [s]
     episode: float = 20.0  # [s]

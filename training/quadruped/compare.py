@@ -9,19 +9,17 @@ from __future__ import annotations
 import argparse
 import json
 import math
+import shutil
 import tempfile
-from collections.abc import Callable
 from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
 import gloam
 
-from ..legged.driver import Driver, load_network
 from ..legged.meter import SETTLE, TIMESTEP, Measures, Meter
-from ..legged.robot import CONTROL_PERIOD, ROOT, GaitChoice
+from ..legged.robot import ROOT
 from . import ground
 from .robot import ROBOT
 
@@ -45,67 +43,16 @@ class Walk(Measures):
     command: tuple[float, float, float]
 
 
-def drive_by(driver: Driver) -> Callable[[Any, int], None]:
-    """Writes the policy's torques before each step."""
-    every = round(CONTROL_PERIOD / TIMESTEP)
-    targets = ROBOT.default_positions
-
-    def drive(memory: Any, step: int) -> None:
-        nonlocal targets
-        qpos, qvel = memory.array("qpos")[:19], memory.array("qvel")[:18]
-        if step % every == 0:
-            targets = driver.targets(qpos, qvel)
-        memory.array("ctrl")[:12] = driver.torques(targets, qpos[7:], qvel[6:])
-
-    return drive
-
-
-class TrueVelocityDriver(Driver):
-    """Adds the integral of the error of the true velocity to the command, as an experiment: the trot controller reads its
-    true velocity, and the network does not."""
-
-    GAIN, LIMIT = 0.8, 0.4  # [1/s], [m/s, rad/s]
-
-    def reset(self) -> None:
-        super().reset()
-        self._integral = np.zeros(3)
-
-    def targets(self, qpos: np.ndarray, qvel: np.ndarray) -> np.ndarray:
-        w, x, y, z = qpos[3:7]
-        ahead = np.array([1 - 2 * (y * y + z * z), 2 * (x * y + w * z)])
-        ahead /= np.linalg.norm(ahead)
-        velocity = np.array([ahead @ qvel[:2], ahead[0] * qvel[1] - ahead[1] * qvel[0], qvel[5]])
-        command = self.command
-        if np.linalg.norm(command) > 0:
-            step = self.GAIN * CONTROL_PERIOD * (command - velocity)
-            self._integral = np.clip(self._integral + step, -self.LIMIT, self.LIMIT)
-        self.command = command + self._integral
-        targets = super().targets(qpos, qvel)
-        self.command = command
-        return targets
-
-
 class Session:
     """One simulation of one controller."""
 
-    def __init__(self, scene: gloam.Scene, driver: Driver | None) -> None:
-        self.sim, self.driver = gloam.load(scene), driver
+    def __init__(self, scene: gloam.Scene) -> None:
+        self.sim = gloam.load(scene)
         self.meter = Meter(self.sim.memory)
-        self.drive = drive_by(driver) if driver is not None else None
-        self.steps = 0
-        self.sim.on_step(self._before_step)
-
-    def _before_step(self, memory: Any) -> None:
-        self.meter.read(float(memory.time))
-        if self.drive is not None:
-            self.drive(memory, self.steps)
-        self.steps += 1
+        self.sim.on_step(lambda memory: self.meter.read(float(memory.time)))
 
     def command(self, command: tuple[float, float, float]) -> None:
-        if self.driver is not None:
-            self.driver.command = np.array(command, float)
-        else:
-            self.sim.robots["go"].command(*command)
+        self.sim.robots["go"].command(*command)
 
     def run(self, seconds: float) -> None:
         end = self.sim.time + seconds
@@ -116,13 +63,18 @@ class Session:
 class Comparison:
     """Makes sessions of both controllers and measures them."""
 
-    def __init__(self, network: Callable[[np.ndarray], np.ndarray], gait: GaitChoice, folder: Path, driver: type[Driver] = Driver) -> None:
-        self.network, self.gait, self.folder, self.driver = network, gait, folder, driver
+    def __init__(self, network: Path, folder: Path, frequency: float, feedback: bool) -> None:
+        self.folder = folder
+        shutil.copy(network, folder / "policy.onnx")
+        lines = network.with_suffix(".toml").read_text().splitlines()
+        kept = (line for line in lines if feedback or not line.startswith("velocity_feedback"))
+        (folder / "policy.toml").write_text("\n".join(kept))
+        self.keys = f'network = "policy.onnx"\nsettings = "policy.toml"\nparams = {{ frequency = {frequency} }}\n'
 
     def session(self, controller: str, course: str, pushes: str = "") -> Session:
-        text = ground.scene(course, "trot" if controller == "trot" else "none", self.folder, TIMESTEP) + pushes
-        driver = self.driver(ROBOT, self.network, self.gait) if controller == "policy" else None
-        return Session(gloam.Scene.parse(text, self.folder), driver)
+        keys = self.keys if controller == "policy" else ""
+        text = ground.scene(course, controller, self.folder, TIMESTEP) + keys + pushes
+        return Session(gloam.Scene.parse(text, self.folder))
 
     def walk(self, controller: str, course: str, command: tuple[float, float, float], seconds: float) -> Walk:
         session = self.session(controller, course)
@@ -168,11 +120,11 @@ def row(label: str, walks: list[Walk]) -> str:
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--policy", type=Path, default=POLICY)
+    parser.add_argument("--policy", type=Path, default=POLICY, help="ONNX file, with its settings beside it in a .toml")
     parser.add_argument("--seconds", type=float, default=8, help="of each walk")
     parser.add_argument("--courses", nargs="+", default=["flat", "rough", "stairs", *SOILS])
     parser.add_argument("--frequency", type=float, default=ROBOT.gait.frequency)
-    parser.add_argument("--true-velocity", action="store_true", help="correct the commands by the true velocity")
+    parser.add_argument("--no-feedback", action="store_true", help="without the policy's velocity_feedback")
     parser.add_argument("--no-pushes", action="store_true")
     parser.add_argument("--json", type=Path)
     arguments = parser.parse_args()
@@ -180,9 +132,7 @@ def main() -> None:
     print("| ground | m/s: trot | policy | rad/s: trot | policy | falls/km: trot | policy | cost: trot | policy |")
     print("|---|---|---|---|---|---|---|---|---|")
     with tempfile.TemporaryDirectory() as folder:
-        gait = GaitChoice(frequency=arguments.frequency)
-        driver = TrueVelocityDriver if arguments.true_velocity else Driver
-        comparison = Comparison(load_network(arguments.policy), gait, Path(folder), driver)
+        comparison = Comparison(arguments.policy, Path(folder), arguments.frequency, not arguments.no_feedback)
         for course in arguments.courses:
             commands = WALKS.get(course, WALKS["soil"])
             now = [comparison.walk(controller, course, command, arguments.seconds)

@@ -75,6 +75,7 @@ struct PolicyInfo {
   double gait_period = 0;          ///< of the terms phase, sin_phase, cos_phase [s]
   /// Low and high vx, vy [m/s] and yaw rate [rad/s]; infinite = no limit.
   std::array<std::array<double, 2>, 3> command_ranges = {};
+  double velocity_feedback = 0;  ///< integral gain of the velocity's error [1/s]; 0 = none
   std::vector<PolicyNetworkInfo> networks;  ///< the last one gives the actions
 };
 

@@ -65,6 +65,36 @@ TEST_F(PolicyRunnerTest, ObservesATurnedAndMovingRobot) {
   EXPECT_EQ(seen(**runner)[13], 0.375f);
 }
 
+TEST_F(PolicyRunnerTest, FeedbackAddsTheIntegralOfTheVelocitysError) {
+  const std::string keys = std::string(kLegPolicy) +
+                           "velocity_feedback = 2\ncommand_ranges = { vx = [-1, 1] }\n";
+  auto runner =
+      make("[[observation]]\nterm = \"command\"\n", constant(3, {0.0f, 0.0f}), keys);
+  ASSERT_TRUE(runner.ok()) << runner.error().to_string();
+  // Heading along the world's y, nose down by 60 degrees: the heading frame stays level.
+  const double yaw = std::sqrt(0.5), cosine = std::cos(std::numbers::pi / 6), sine = 0.5;
+  const double pose[7] = {0, 0, 1, yaw * cosine, -yaw * sine, yaw * sine, yaw * cosine};
+  const double velocity[6] = {-0.1, 0.4, 3, 0, 0, 0};  // 0.4 ahead, 0.1 to the left
+  std::copy_n(pose, 7, leg_.data->qpos);
+  std::copy_n(velocity, 6, leg_.data->qvel);
+  for (int period = 1; period <= 3; ++period) {
+    ASSERT_EQ(act(**runner, {0.5, 0, 0}).kind, PolicyFault::Kind::kNone);
+    EXPECT_NEAR(seen(**runner)[0], 0.5 + period * 2.0 / 50 * 0.1, 1e-6);
+    EXPECT_NEAR(seen(**runner)[1], -period * 2.0 / 50 * 0.1, 1e-6);
+    EXPECT_NEAR(seen(**runner)[2], 0, 1e-6);
+  }
+  auto copy = (*runner)->clone();
+  ASSERT_EQ(act(*copy, {0.5, 0, 0}).kind, PolicyFault::Kind::kNone);
+  EXPECT_NEAR(seen(*copy)[0], 0.5 + 4 * 2.0 / 50 * 0.1, 1e-6);
+  for (int period = 0; period < 500; ++period) act(**runner, {0.9, 0.05, 0});
+  EXPECT_NEAR(seen(**runner)[0], 1, 1e-6) << "the end of the command range";
+  EXPECT_NEAR(seen(**runner)[1], 0.05 - 0.4, 1e-6) << "the largest correction";
+  act(**runner, {});
+  EXPECT_THAT(seen(**runner), ElementsAre(0, 0, 0));
+  act(**runner, {0.5, 0, 0});
+  EXPECT_NEAR(seen(**runner)[0], 0.5 + 2.0 / 50 * 0.1, 1e-6);
+}
+
 TEST_F(PolicyRunnerTest, ClipsThenScalesThenRemembersOldestFirst) {
   auto runner = make(
       "[[observation]]\nterm = \"command\"\nclip = [-1, 0.5]\nscale = [1, 10, 100]\n"
