@@ -139,6 +139,7 @@ PolicyFault PolicyRunner::act(const mjModel& model, const mjData& data,
   for (size_t i = 0; i < 3; ++i)
     clipped[i] = std::clamp(command[i], spec.command_ranges[i][0], spec.command_ranges[i][1]);
   clock_.tick(gait_, clipped, spec.rate);
+  const std::array<double, 3> corrected = feedback_.correct(clipped, state_, spec);
   TermInputs inputs;
   inputs.model = &model;
   inputs.data = &data;
@@ -146,7 +147,7 @@ PolicyFault PolicyRunner::act(const mjModel& model, const mjData& data,
   inputs.spec = &spec;
   inputs.gait = &gait_;
   inputs.robot = &state_;
-  inputs.command = feedback_.correct(clipped, state_, spec);
+  inputs.command = corrected;
   inputs.action = action_;
   inputs.previous_action = previous_action_;
   inputs.clock = &clock_;
