@@ -6,7 +6,8 @@
 namespace gloam {
 namespace {
 
-constexpr double kLargestCorrection = 0.4;  // a robot that is held back must not run off when freed
+// A robot that is held back must not run off when freed, and one that is pushed must recover first.
+constexpr double kLargestCorrection = 0.4, kLargestError = 0.5;  // [m/s, rad/s]
 
 /// vx, vy and yaw rate in the heading frame.
 std::array<double, 3> planar_velocity(const RobotState& robot) {
@@ -29,8 +30,10 @@ std::array<double, 3> VelocityFeedback::correct(const std::array<double, 3>& com
   const std::array<double, 3> velocity = planar_velocity(robot);
   std::array<double, 3> corrected;
   for (size_t i = 0; i < 3; ++i) {
-    const double step = spec.velocity_feedback / spec.rate * (command[i] - velocity[i]);
-    integral_[i] = std::clamp(integral_[i] + step, -kLargestCorrection, kLargestCorrection);
+    const double error = command[i] - velocity[i];
+    const double step = std::abs(error) <= kLargestError ? error : 0;
+    integral_[i] = std::clamp(integral_[i] + spec.velocity_feedback / spec.rate * step,
+                              -kLargestCorrection, kLargestCorrection);
     corrected[i] =
         std::clamp(command[i] + integral_[i], spec.command_ranges[i][0], spec.command_ranges[i][1]);
   }

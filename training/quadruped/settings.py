@@ -42,5 +42,5 @@ SETTINGS = Settings(
     rewards=REWARDS,
     stages=(Stage(1047, -2e-3, 0.7, 0.005, 12), Stage(3375, -4e-3, 1.0, 0.003, 13)),
     fall_height=0.1,
-    velocity_feedback=0.8,
+    velocity_feedback=3.0,
 )
