@@ -7,7 +7,7 @@ namespace gloam {
 namespace {
 
 // A robot that is held back must not run off when freed, and one that is pushed must recover first.
-constexpr double kLargestCorrection = 0.4, kLargestError = 0.5;  // [m/s, rad/s]
+constexpr double kLargestCorrection = 0.4, kLargestError = 1;  // [m/s, rad/s]
 
 /// vx, vy and yaw rate in the heading frame.
 std::array<double, 3> planar_velocity(const RobotState& robot) {

@@ -13,7 +13,7 @@ class VelocityFeedback {
   /// `command` (vx, vy [m/s], yaw rate [rad/s]) plus the integral of its error, within the command
   /// ranges. Velocities are those of the heading frame: z is vertical, x along the base's x.
   /// A zero command resets the integral, so that a standing robot stays where it is. Errors above
-  /// 0.5 (m/s, rad/s) are not integrated.
+  /// 1 (m/s, rad/s) are not integrated.
   std::array<double, 3> correct(const std::array<double, 3>& command, const RobotState& robot,
                                 const PolicySpec& spec);
   void reset() { integral_ = {}; }

@@ -86,8 +86,8 @@ TEST_F(PolicyRunnerTest, FeedbackAddsTheIntegralOfTheVelocitysError) {
   auto copy = (*runner)->clone();
   ASSERT_EQ(act(*copy, {0.5, 0, 0}).kind, PolicyFault::Kind::kNone);
   EXPECT_NEAR(seen(*copy)[0], 0.5 + 4 * 2.0 / 50 * 0.1, 1e-6);
-  ASSERT_EQ(act(**runner, {0.95, 0, 0}).kind, PolicyFault::Kind::kNone);
-  EXPECT_NEAR(seen(**runner)[0], 0.95 + 3 * 2.0 / 50 * 0.1, 1e-6) << "an error above 0.5 m/s";
+  ASSERT_EQ(act(**runner, {-0.7, 0, 0}).kind, PolicyFault::Kind::kNone);
+  EXPECT_NEAR(seen(**runner)[0], -0.7 + 3 * 2.0 / 50 * 0.1, 1e-6) << "an error above 1 m/s";
   for (int period = 0; period < 500; ++period) act(**runner, {0.9, 0.05, 0});
   EXPECT_NEAR(seen(**runner)[0], 1, 1e-6) << "the end of the command range";
   EXPECT_NEAR(seen(**runner)[1], 0.05 - 0.4, 1e-6) << "the largest correction";
