@@ -18,8 +18,7 @@ from gloam.envs.free_space import FreeSpace
 from route import Points, Pursuit, bearing, shortest
 
 LIDAR_AT = np.array([-0.045, 0.0])  # in the base's frame [m]
-SIGHT = {"none": 4.0, "minor": 4.0, "major": 2.5}  # of obstacles [m]; dust of "major" returns beams from 3 m on
-AHEAD, LIMIT = 1.2, 150.0  # m of pursuit, s for a run
+SIGHT, AHEAD, LIMIT = 4.0, 1.2, 150.0  # m of obstacles, m of pursuit, s for a run
 
 
 class Patience:
@@ -87,7 +86,7 @@ def cross(seed: int, level: str, out: Path) -> dict[str, float]:
         with sim.record(out / f"{level}_{seed}.mcap", ["/clock", "/tf*"], overwrite=True, embed=True):
             while np.linalg.norm(base.pose.p[:2] - route[-1]) > 0.3 and sim.time < LIMIT:
                 points, turn = sim.step_until(lidar).points[:, :2] + LIDAR_AT, base.pose.R[:2, :2]
-                points = points[np.linalg.norm(points, axis=1) < SIGHT[level]]
+                points = points[np.linalg.norm(points, axis=1) < SIGHT]
                 moving = window.velocities(base.pose.p[:2] + points @ turn.T) @ turn
                 angle = bearing(base.pose, pursuit.target(base.pose.p))
                 if patience.is_at_end(base.pose.p[:2], sim.time):
