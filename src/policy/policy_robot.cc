@@ -132,11 +132,11 @@ Status PolicyRobot::find_base(const TermBinding& binding) {
     return {};
   }
   const auto missing = [&](std::string use, std::string remedy) {
-    return Error{ErrorKind::kUnsupported,
-                 fmt::format("the policy {}, but robot '{}' has no floating base", use,
-                             binding.robot->name),
-                 {},
-                 "set base = \"free\" in its [[robot]], or " + remedy};
+    return Error{
+        ErrorKind::kUnsupported,
+        fmt::format("the policy {}, but robot '{}' has no floating base", use, binding.robot->name),
+        {},
+        "set base = \"free\" in its [[robot]], or " + remedy};
   };
   if (binding.spec->velocity_feedback > 0)
     return missing("has a velocity_feedback", "remove it from the policy's settings");

@@ -9,14 +9,22 @@
 namespace gloam {
 namespace {
 
-constexpr std::string_view kPolicyKeys[] = {"rate",         "joints",
-                                            "model_joints", "kp",
-                                            "kd",           "default_positions",
-                                            "action_scale", "action_clip",
-                                            "torque_limit", "history_start",
-                                            "gait_period",  "command_ranges",
-                                            "gait",         "feet",
-                                            "history",      "history_order",
+constexpr std::string_view kPolicyKeys[] = {"rate",
+                                            "joints",
+                                            "model_joints",
+                                            "kp",
+                                            "kd",
+                                            "default_positions",
+                                            "action_scale",
+                                            "action_clip",
+                                            "torque_limit",
+                                            "history_start",
+                                            "gait_period",
+                                            "command_ranges",
+                                            "gait",
+                                            "feet",
+                                            "history",
+                                            "history_order",
                                             "velocity_feedback"};
 constexpr std::string_view kNetworkKeys[] = {"name",          "file",  "every",      "history",
                                              "history_order", "prime", "observation"};

@@ -66,10 +66,9 @@ TEST_F(PolicyRunnerTest, ObservesATurnedAndMovingRobot) {
 }
 
 TEST_F(PolicyRunnerTest, FeedbackAddsTheIntegralOfTheVelocitysError) {
-  const std::string keys = std::string(kLegPolicy) +
-                           "velocity_feedback = 2\ncommand_ranges = { vx = [-1, 1] }\n";
-  auto runner =
-      make("[[observation]]\nterm = \"command\"\n", constant(3, {0.0f, 0.0f}), keys);
+  const std::string keys =
+      std::string(kLegPolicy) + "velocity_feedback = 2\ncommand_ranges = { vx = [-1, 1] }\n";
+  auto runner = make("[[observation]]\nterm = \"command\"\n", constant(3, {0.0f, 0.0f}), keys);
   ASSERT_TRUE(runner.ok()) << runner.error().to_string();
   // Heading along the world's y, nose down by 60 degrees: the heading frame stays level.
   const double yaw = std::sqrt(0.5), cosine = std::cos(std::numbers::pi / 6), sine = 0.5;

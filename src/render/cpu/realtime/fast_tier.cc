@@ -34,6 +34,16 @@ float cell_edge(const CameraView32& camera) {
   return min(realtime::kCellPixels / camera.fx, realtime::kWidestCell);
 }
 
+float lamp_cell_edge(const CameraView32& camera) {
+  return min(realtime::kLampCellPixels / camera.fx, realtime::kWidestCell);
+}
+
+/// Our own BVH does not trace what moves apart from the rest.
+bool has_lamp_lists(const Job& job) {
+  return !job.tracer.own && job.scene.lights.size > 0 &&
+         job.scene.lights.size <= LampCache::kMostLights;
+}
+
 }  // namespace
 
 bool FastHistory::find_moving_lamps(const SceneView& scene) {
@@ -102,7 +112,13 @@ void FastHistory::add_picture(const Job& job, uint32_t pass, RenderWatch* watch)
     const float edge = cell_edge(job.camera) * coarse_;
     IrradianceCacheView cache = cache_.view(eye, edge);
     cache.lamps_move = lamps_move_;
-    trace({job.scene, job.tracer, job.camera, cache, seed}, pass, job.slices);
+    std::optional<LampCellsView> lamps;
+    if (has_lamp_lists(job)) lamps = lamp_cells_.view(eye, lamp_cell_edge(job.camera));
+    trace({job.scene, job.tracer, job.camera, cache, lamps, seed}, pass, job.slices);
+    if (lamps) {
+      lamp_cells_.ask(lamp_requests_);
+      rays_ += lamp_cells_.update(job.scene, job.tracer, seed, realtime::kOldLampCells, watch);
+    }
     cache_.ask(requests_);
     if (first && cache_.size() > realtime::kMaxFirstCells && coarse_ < realtime::kMaxEdgeFactor) {
       coarse_ *= 2;
@@ -139,6 +155,7 @@ RenderStats FastHistory::render(const Job& job) {
   }
   const bool first = pictures_ == 0;
   lamps_move_ = find_moving_lamps(job.scene);
+  lamp_cells_.follow(job.scene);
   const uint32_t passes = first ? realtime::kFirstPictures : 1;
   RenderWatch watch(job.settings.progress,
                     first ? IrradianceCache::kFirstRounds + realtime::kFirstPictures : 1,

@@ -1,9 +1,12 @@
 #pragma once
 // The fast tier: what a camera remembers from picture to picture, and one picture more.
 
+#include <optional>
+
 #include "render/cpu/path/tile.h"
 #include "render/cpu/realtime/fast_filter.h"
 #include "render/cpu/realtime/irradiance_cache.h"
+#include "render/cpu/realtime/lamp_cache.h"
 #include "render/renderer.h"
 
 namespace gloam {
@@ -14,12 +17,13 @@ struct FastView {
   const CpuTracer& tracer;
   const CameraView32& camera;
   IrradianceCacheView cache;
+  std::optional<LampCellsView> lamps;
   uint64_t seed;
 };
 
-/// Requests of one tile: for surfaces in view, and for what mirrors show.
+/// Requests of one tile: for surfaces in view, for what mirrors show, and for lists of lamps.
 struct AskedOfTile {
-  std::vector<CacheRequest> seen, mirrored;
+  std::vector<CacheRequest> seen, mirrored, lamps;
 };
 
 /// Position and direction of a lamp.
@@ -44,12 +48,13 @@ class FastHistory final : public ViewHistory {
   void compose();
 
   IrradianceCache cache_;
+  LampCache lamp_cells_;
   FastFrame now_, before_;
   FastFilter filter_;
   std::vector<LampPlace> lamps_;  ///< in the last picture
   bool lamps_move_ = false;
   std::vector<AskedOfTile> asked_;  ///< by tile
-  std::vector<CacheRequest> requests_;
+  std::vector<CacheRequest> requests_, lamp_requests_;
   Vec2f near_offset_;  ///< in [0, 1)², of the directions of FastSampleOf::near
   uint64_t rays_ = 0;
   float coarse_ = 1;       ///< edges of the cache's cells, times those wanted

@@ -148,6 +148,16 @@ void spread_air(int x0, int y0, FastFrame* frame) {
   });
 }
 
+/// The tracer of what may move alone.
+CpuTracer moving_part(const CpuTracer& tracer) {
+  CpuTracer moving = tracer;
+  moving.fixed = {};
+  moving.scanned.solids = {};
+  moving.scanned.groups = {};
+  moving.clip = nullptr;
+  return moving;
+}
+
 /// Reflections that one block's pixels wait for.
 struct PendingBlock {
   int x = 0, y = 0;
@@ -211,8 +221,10 @@ class ReflectedRays {
 uint64_t FastHistory::trace_tile(const FastView& view, uint32_t pass, int x0, int y0,
                                  AskedOfTile* asked) {
   const FlushDenormals flush;
-  const FastWorld<CpuTracer> world{view.scene, view.tracer, view.cache};
-  TileRequests seen(&asked->seen), mirrored(&asked->mirrored);
+  FastWorld<CpuTracer> world{view.scene, view.tracer, view.cache};
+  const CpuTracer movers = moving_part(view.tracer);
+  if (view.lamps) world.lamps = &*view.lamps, world.movers = &movers;
+  TileRequests seen(&asked->seen), mirrored(&asked->mirrored), lamps(&asked->lamps);
   ReflectedRays reflected(world, pictures_, &mirrored);
   PendingBlock blocks[kTile * kTile / kLaneCount];
   int count = 0;
@@ -237,7 +249,8 @@ uint64_t FastHistory::trace_tile(const FastView& view, uint32_t pass, int x0, in
     // Pixel by pixel, so that it is the same for any number of lanes.
     for (int i = 0; i < kLaneCount; ++i) {
       for (int kind = 0; kind < kFastRequests; ++kind) {
-        seen.add(requests[kind * kLaneCount + i],
+        TileRequests& list = kind == kLampRequest ? lamps : seen;
+        list.add(requests[kind * kLaneCount + i],
                  random_of(pixels.x + i % 4, pixels.y + i / 4, kind, pictures_));
       }
     }
@@ -269,12 +282,14 @@ void FastHistory::trace(const FastView& view, uint32_t pass, RenderSlices* slice
     SceneView plain = view.scene;  // rays of pixels go where they must
     plain.guide.probability = 0;
     traced[static_cast<size_t>(tile)] =
-        trace_tile({plain, view.tracer, view.camera, view.cache, view.seed}, pass,
+        trace_tile({plain, view.tracer, view.camera, view.cache, view.lamps, view.seed}, pass,
                    static_cast<int>(column) * kTile, static_cast<int>(row) * kTile,
                    &asked_[static_cast<size_t>(tile)]);
   });
   requests_.clear();
+  lamp_requests_.clear();
   for (const AskedOfTile& of : asked_) {
+    lamp_requests_.insert(lamp_requests_.end(), of.lamps.begin(), of.lamps.end());
     requests_.insert(requests_.end(), of.seen.begin(), of.seen.end());
     requests_.insert(requests_.end(), of.mirrored.begin(), of.mirrored.end());
   }

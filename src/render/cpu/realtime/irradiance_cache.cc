@@ -8,42 +8,18 @@
 #include "render/kernel/light/light_directions.h"
 
 namespace gloam {
-uint32_t IrradianceCache::slot_of(uint64_t key) const {
-  const auto size = static_cast<uint32_t>(keys_.size());
-  uint32_t slot = caches::slot_of(key, size);
-  while (keys_[slot] != 0 && keys_[slot] != key) slot = (slot + 1) & (size - 1);
-  return slot;
-}
-
-void IrradianceCache::rebuild(size_t slots) {
-  keys_.assign(slots, 0);
-  rows_.assign(slots, 0);
-  for (size_t row = 0; row < cells_.size(); ++row) {
-    const uint32_t slot = slot_of(cells_[row].key);
-    keys_[slot] = cells_[row].key;
-    rows_[slot] = static_cast<uint32_t>(row);
-  }
-}
 
 void IrradianceCache::ask(const std::vector<CacheRequest>& requests, size_t most) {
-  if (keys_.empty()) rebuild(1u << 12);
   for (const CacheRequest& request : requests) {
     if (request.key == 0) continue;
-    uint32_t slot = slot_of(request.key);
-    if (keys_[slot] == 0) {
-      if (cells_.size() >= most) continue;
-      if (2 * (cells_.size() + 1) > keys_.size()) {
-        rebuild(2 * keys_.size());
-        slot = slot_of(request.key);
-      }
-      keys_[slot] = request.key;
-      rows_[slot] = static_cast<uint32_t>(cells_.size());
+    if (cells_.size() >= most && index_.find(request.key) < 0) continue;
+    const uint32_t row = index_.find_or_add(request.key);
+    if (row == cells_.size()) {
       cells_.push_back({request.key});
       light_.push_back(CellLight::unknown(mean_));
       homes_.emplace_back();
       starts_.resize(cells_.size() * kStarts);
     }
-    const uint32_t row = rows_[slot];
     Cell& cell = cells_[row];
     cell.last_asked = update_;
     // Reservoir of starts: some of many places that ask, by chance, so that rays start all over the
@@ -63,10 +39,10 @@ float IrradianceCache::luminance_beside(uint64_t key) const {
   float sum = 0, rays = 0;
   for (int axis = 0; axis < 3; ++axis) {
     for (const bool up : {false, true}) {
-      const uint32_t slot = slot_of(caches::beside(key, axis, up));
-      if (keys_[slot] == 0) continue;
-      const auto weight = static_cast<float>(cells_[rows_[slot]].samples);
-      sum += luminance(light_[rows_[slot]].all) * weight;
+      const int row = index_.find(caches::beside(key, axis, up));
+      if (row < 0) continue;
+      const auto weight = static_cast<float>(cells_[static_cast<size_t>(row)].samples);
+      sum += luminance(light_[static_cast<size_t>(row)].all) * weight;
       rays += weight;
     }
   }
@@ -422,18 +398,14 @@ void IrradianceCache::forget() {
   light_.resize(kept);
   homes_.resize(kept);
   starts_.resize(kept * kStarts);
-  rebuild(keys_.size());
+  index_.assign(cells_);
 }
 
 IrradianceCacheView IrradianceCache::view(Vec3f eye, float edge_per_metre) const {
-  IrradianceCacheView view;
-  view.keys = {keys_.data(), static_cast<uint32_t>(keys_.size())};
-  view.cells = {rows_.data(), static_cast<uint32_t>(rows_.size())};
+  IrradianceCacheView view{index_.grid(eye, edge_per_metre)};
   view.light = {light_.data(), static_cast<uint32_t>(light_.size())};
   view.homes = {homes_.data(), static_cast<uint32_t>(homes_.size())};
   view.mean = mean_;
-  view.eye = eye;
-  view.edge_per_metre = edge_per_metre;
   return view;
 }
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "render/cpu/path/watch.h"
+#include "render/cpu/realtime/cell_index.h"
 #include "render/cpu/realtime/excess_regions.h"
 #include "render/cpu/tracer/cpu_tracer.h"
 #include "render/kernel/realtime/fast_cache.h"
@@ -57,8 +58,6 @@ class IrradianceCache {
 
   /// Next random number, of the same sequence each time.
   uint32_t next_random();
-  uint32_t slot_of(uint64_t key) const;
-  void rebuild(size_t slots);
   /// Mean luminance of the cells beside that of a key, or of all cells if there are none.
   float luminance_beside(uint64_t key) const;
   /// Home of a new cell of air; places that are hidden from there start no rays.
@@ -75,8 +74,7 @@ class IrradianceCache {
   double extrapolate(int round, bool remembers);
   void forget();
 
-  std::vector<uint64_t> keys_;
-  std::vector<uint32_t> rows_;  ///< of each slot
+  CellIndex index_;
   std::vector<Cell> cells_;
   std::vector<CacheRequest> starts_;  ///< (cells x kStarts)
   std::vector<CellLight> light_;

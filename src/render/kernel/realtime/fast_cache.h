@@ -2,6 +2,7 @@
 // Requests of the fast stage to the irradiance cache, and lookups in it. Device-safe.
 
 #include "render/kernel/realtime/irradiance_cache_view.h"
+#include "render/kernel/realtime/lamp_cells.h"
 #include "render/kernel/surface/surface_point.h"
 
 namespace gloam {
@@ -20,6 +21,8 @@ struct FastWorld {
   const SceneView& scene;
   const Tracer& tracer;
   const IrradianceCacheView& cache;
+  const LampCellsView* lamps = nullptr;  ///< null: lamps are searched for at each surface
+  const Tracer* movers = nullptr;        ///< with `lamps`: of what may move alone
 };
 
 namespace fasts {
@@ -40,10 +43,9 @@ GLOAM_HD CachePlaceOf<F> place_of(const SurfaceOf<F>& v) {
 
 /// The cells of places; asks for them.
 template <class F>
-GLOAM_HD CacheCellOf<F> ask_cells(const IrradianceCacheView& cache, const CachePlaceOf<F>& at,
-                                  MaskOf<F> active, Vec3Of<F> jitter, uint32_t coarser,
-                                  CacheRequest* requests) {
-  const CacheCellOf<F> cells = cache_cell<F>(cache, at.p, at.n, at.side, jitter, coarser);
+GLOAM_HD CacheCellOf<F> ask_cells(const CellGrid& grid, const CachePlaceOf<F>& at, MaskOf<F> active,
+                                  Vec3Of<F> jitter, uint32_t coarser, CacheRequest* requests) {
+  const CacheCellOf<F> cells = cache_cell<F>(grid, at.p, at.n, at.side, jitter, coarser);
   each_lane(active, [&](int i) {
     requests[i] = {cache_key(cells, i), lane(at.start, i), lane(at.n, i), lane(at.g, i)};
   });

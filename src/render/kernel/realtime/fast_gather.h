@@ -19,6 +19,7 @@ struct GatherOptionsOf {
   /// Light straight from lamps counts, weighted against direct_light() by path->pdf_bsdf. If not,
   /// direct_light() at the ray's origin alone counts it.
   bool counts_lamps = false;
+  LampListsOf<F> lists = {};      ///< of the ray's origin
   float near_lamp = 0.0f;         ///< else, distance up to which lamps count nevertheless [m]
   MaskOf<F> flames = false;       ///< lanes in which emission of media counts
   MaskOf<F> near_flames = false;  ///< lanes in which it does within glow::kNearGlow
@@ -62,7 +63,7 @@ class GatherRays {
   [[gnu::always_inline]] GLOAM_HD void add_light_before(int event, F tmax, Mask found) {
     if (!world_.scene.media.volumes.empty()) cross_air(event, tmax, found);
     if (options_.counts_lamps && world_.scene.has_visible_lights) {
-      const Vec3Of<F> lamps = lamps_met(world_.scene, path_, tmax, active_);
+      const Vec3Of<F> lamps = lamps_met(world_, options_.lists, path_, tmax, active_);
       out_.light += select<F>(active_, throughput_ * lamps, Vec3Of<F>{});
     }
     if (const Mask missed = active_ & !found; any(missed)) {
@@ -128,7 +129,8 @@ class GatherRays {
         paths::emitter_pdf(world_.scene, path_, v, shines & first_, [&](uint32_t row, int i) {
           // Light of lamps to a cell counts where surfaces sample it: no light sampler is prepared
           // there.
-          return options_.counts_lamps ? lamp_probability(world_.scene, path_, row, i) : 1.0f;
+          return options_.counts_lamps ? lamp_probability(world_, options_.lists, path_, row, i)
+                                       : 1.0f;
         });
     const F weight =
         select(first_ & (pdf > 0.0f),

@@ -96,6 +96,7 @@ struct LitSurfaceOf {
 template <class F>
 struct LampOptionsOf {
   MaskOf<F> active = true;
+  LampListsOf<F> lists = {};  ///< lanes with one have their lamps from it
   /// Lanes whose specular ray may find the lamp too, if it has an extent; of glowing media either
   /// that ray or this sample shows the reflection.
   MaskOf<F> traced = false;
@@ -119,10 +120,12 @@ class LampSum {
                    const LampOptionsOf<F>& options, paths::State<F>* path)
       : world_(world), s_(surface), options_(options), path_(*path) {}
 
-  [[gnu::always_inline]] GLOAM_HD void add(const LampSampleOf<F>& lamp) {
+  /// Adds a sample for the `active` lanes; in the `clear` ones only what may move can hide it.
+  [[gnu::always_inline]] GLOAM_HD void add(const LampSampleOf<F>& lamp, MaskOf<F> active,
+                                           MaskOf<F> clear = false) {
     const LightSampleOf<F>& light = lamp.light;
     const SurfaceOf<F>& v = s_.v;
-    MaskOf<F> lit = options_.active & (light.pdf > 0.0f) & (dot(light.wi, v.geometric) > 0.0f);
+    MaskOf<F> lit = active & (light.pdf > 0.0f) & (dot(light.wi, v.geometric) > 0.0f);
     if (!any(lit)) return;
     const Vec3Of<F> wi = s_.frame.to_local(light.wi);
     lit = lit & (wi.z > 0.0f);
@@ -134,10 +137,15 @@ class LampSum {
     RayOf<F> shadow = path_.ray;
     aim_shadow_ray(v.p, v.geometric, v.t, light, &shadow);
     Vec3Of<F> arriving = light.radiance * (1.0f / light.pdf);
-    if (const MaskOf<F> shadowed = lit & light.casts_shadow; any(shadowed)) {
+    if (const MaskOf<F> shadowed = lit & light.casts_shadow & !clear; any(shadowed)) {
       const Vec3Of<F> passed =
           paths::transmit(world_.scene, world_.tracer, shadow, shadowed, &path_.result.rays);
       arriving = select<F>(shadowed, arriving * passed, arriving);
+    }
+    if (const MaskOf<F> open = lit & light.casts_shadow & clear; any(open)) {
+      const Vec3Of<F> passed =
+          paths::transmit(world_.scene, *world_.movers, shadow, open, &path_.result.rays);
+      arriving = select<F>(open, arriving * passed, arriving);
     }
     light_.diffuse += select<F>(lit, arriving * (wi.z * kInvPi), Vec3Of<F>{});
     light_.specular += select<F>(lit, arriving * f * weight, Vec3Of<F>{});
@@ -174,29 +182,71 @@ class LampSum {
   F total_ = 0.0f;  ///< illuminance of all samples [lx]
 };
 
-/// Direct light at the surfaces of the active lanes: of every light and glowing medium, or of some
-/// samples of them all.
+/// Adds the lamps that move to the sum: no list holds them.
 template <class F, class Tracer>
-GLOAM_HD_LARGE LampLightOf<F> direct_light(const FastWorld<Tracer>& world,
-                                           const LitSurfaceOf<F>& surface,
-                                           const LampOptionsOf<F>& options, paths::State<F>* path) {
-  const SceneView& scene = world.scene;
-  const SurfaceOf<F>& v = surface.v;
-  const MaskOf<F> active = options.active;
-  LampSum<F, Tracer> sum(world, surface, options, path);
-  if (scene.has_glow() && (options.every || scene.lights.size == 0)) {
+GLOAM_HD void add_movable_lamps(const FastWorld<Tracer>& world, const SurfaceOf<F>& v,
+                                MaskOf<F> active, paths::State<F>* path, LampSum<F, Tracer>* sum) {
+  for (uint32_t k = 0; k < world.lamps->movable.size; ++k) {
+    const uint32_t row = world.lamps->movable[k];
+    const F weight = light_weight(world.scene, world.scene.lights[row], v.p, v.geometric);
+    const MaskOf<F> near = active & (weight > 0.0f);
+    if (!any(near)) continue;
     LampSampleOf<F> lamp;
-    sample_glow(scene, v.p, v.geometric, path->sampler.next_2d(active), active, &lamp);
-    sum.add(lamp);
+    lamp.light = sample_one_light(world.scene, row, v.p, path->sampler.next_2d(active),
+                                  path->ray.time, near);
+    sum->add(lamp, near);
   }
-  uint32_t samples = options.samples;
-  if (scene.lights.size > 0) {
-    const float glow = options.every
-                           ? 0.0f
-                           : (samples > 1 ? realtime::kGlowAmongLamps : realtime::kGlowProbability);
-    prepare_light_sampler(scene, v.p, v.geometric, active, glow, &path->light_sampler);
+}
+
+/// Adds the lamps of the lanes' lists: all of them, or of long lists some samples.
+template <class F, class Tracer>
+GLOAM_HD void add_listed_lamps(const FastWorld<Tracer>& world, const LampListsOf<F>& lists,
+                               const SurfaceOf<F>& v, MaskOf<F> active, paths::State<F>* path,
+                               LampSum<F, Tracer>* sum) {
+  const SceneView& scene = world.scene;
+  MaskOf<F> few = false;
+  each_lane(active, [&](int i) {
+    set_lane(&few, i, lists.of[i]->visible <= realtime::kMaxLampsOfSurface);
+  });
+  ListedLamps<F> lamps(lists, few);
+  for (ListedLampOf<F> one; lamps.next(&one);) {
+    LampSampleOf<F> lamp;
+    lamp.light = sample_one_light(scene, one.lamp, v.p, path->sampler.next_2d(one.lanes),
+                                  path->ray.time, one.lanes);
+    sum->add(lamp, one.lanes, one.clear);
   }
-  if (options.every || scene.lights.size == 0) samples = scene.lights.size;
+  const MaskOf<F> many = active & !few;
+  for (uint32_t k = 0; k < realtime::kSampledLights && any(many); ++k) {
+    Vec2Of<F> u = path->sampler.next_2d(many);
+    u.x = (u.x + static_cast<float>(k)) * (1.0f / static_cast<float>(realtime::kSampledLights));
+    LampSampleOf<F> lamp;
+    lamp.light.pdf = 0.0f;
+    MaskOf<F> clear = false;
+    each_lane(many, [&](int i) {
+      const LampDraw draw = draw_lamp(*lists.of[i], lane(u.x, i));
+      if (!(draw.probability > 0)) return;
+      LightSample light = sample_one_light<float>(
+          scene, draw.lamp, lane(v.p, i), {draw.rest, lane(u.y, i)}, lane(path->ray.time, i), true);
+      light.pdf *= draw.probability * static_cast<float>(realtime::kSampledLights);
+      set_lane(&lamp.light, i, light);
+      set_lane(&clear, i, draw.clear);
+    });
+    sum->add(lamp, many, clear);
+  }
+  if (!world.lamps->movable.empty()) add_movable_lamps(world, v, active, path, sum);
+}
+
+/// Adds samples of all lights, chosen at the surface itself.
+template <class F, class Tracer>
+GLOAM_HD void add_any_lamps(const FastWorld<Tracer>& world, const LampOptionsOf<F>& options,
+                            const SurfaceOf<F>& v, MaskOf<F> active, paths::State<F>* path,
+                            LampSum<F, Tracer>* sum) {
+  const SceneView& scene = world.scene;
+  const float glow = options.every ? 0.0f
+                                   : (options.samples > 1 ? realtime::kGlowAmongLamps
+                                                          : realtime::kGlowProbability);
+  prepare_light_sampler(scene, v.p, v.geometric, active, glow, &path->light_sampler);
+  const uint32_t samples = options.every ? scene.lights.size : options.samples;
   for (uint32_t k = 0; k < samples; ++k) {
     Vec2Of<F> u = path->sampler.next_2d(active);
     LampSampleOf<F> lamp;
@@ -210,32 +260,69 @@ GLOAM_HD_LARGE LampLightOf<F> direct_light(const FastWorld<Tracer>& world,
       lamp = sample_lamp(scene, path->light_sampler, v.p, v.geometric, u, path->ray.time, active);
       lamp.light.pdf *= static_cast<float>(samples);
     }
-    sum.add(lamp);
+    sum->add(lamp, active);
   }
+}
+
+/// Direct light at the surfaces of the active lanes: of every light and glowing medium, or of some
+/// samples of them all.
+template <class F, class Tracer>
+GLOAM_HD_LARGE LampLightOf<F> direct_light(const FastWorld<Tracer>& world,
+                                           const LitSurfaceOf<F>& surface,
+                                           const LampOptionsOf<F>& options, paths::State<F>* path) {
+  const SceneView& scene = world.scene;
+  const SurfaceOf<F>& v = surface.v;
+  const MaskOf<F> active = options.active, listed = active & options.lists.known;
+  LampSum<F, Tracer> sum(world, surface, options, path);
+  const MaskOf<F> glows = options.every || scene.lights.size == 0 ? active : listed;
+  if (scene.has_glow() && any(glows)) {
+    LampSampleOf<F> lamp;
+    sample_glow(scene, v.p, v.geometric, path->sampler.next_2d(glows), glows, &lamp);
+    sum.add(lamp, glows);
+  }
+  if (scene.lights.size == 0) return sum.finish();
+  if (any(listed)) add_listed_lamps(world, options.lists, v, listed, path, &sum);
+  const MaskOf<F> others = active & !listed;
+  if (any(others)) add_any_lamps(world, options, v, others, path, &sum);
   return sum.finish();
 }
 
 /// Number of samples with which direct_light() at a surface in view takes the light of a row, in
 /// the mean, for lane i.
-template <class F>
-GLOAM_HD float lamp_probability(const SceneView& scene, const paths::State<F>& path, uint32_t row,
-                                int i) {
-  if (scene.lights.size <= realtime::kMaxFastLights) return 1.0f;
+template <class F, class Tracer>
+GLOAM_HD float lamp_probability(const FastWorld<Tracer>& world, const LampListsOf<F>& lists,
+                                const paths::State<F>& path, uint32_t row, int i) {
+  if (const LampCell* cell = lists.of[i]; cell != nullptr) {
+    for (uint32_t k = 0; k < world.lamps->movable.size; ++k)
+      if (world.lamps->movable[k] == row) return 1.0f;
+    const float drawn = draw_probability(*cell, row);
+    if (cell->visible <= realtime::kMaxLampsOfSurface) return drawn > 0 ? 1.0f : 0.0f;
+    return static_cast<float>(realtime::kSampledLights) * drawn;
+  }
+  if (world.scene.lights.size <= realtime::kMaxFastLights) return 1.0f;
   return static_cast<float>(realtime::kSampledLights) *
-         path.light_sampler.probability(scene, row, i);
+         path.light_sampler.probability(world.scene, row, i);
 }
 
 /// Light of lamps' spheres and of suns that path.ray meets before `tmax`, weighted against
-/// direct_light() at path.from.
-template <class F>
-GLOAM_HD Vec3Of<F> lamps_met(const SceneView& scene, const paths::State<F>& path, F tmax,
-                             MaskOf<F> active) {
+/// direct_light() at path.from, where the lanes have `lists`.
+template <class F, class Tracer>
+GLOAM_HD Vec3Of<F> lamps_met(const FastWorld<Tracer>& world, const LampListsOf<F>& lists,
+                             const paths::State<F>& path, F tmax, MaskOf<F> active) {
+  const SceneView& scene = world.scene;
   const auto clear = [](int, float) { return Vec3f{1, 1, 1}; };
   Vec3Of<F> sum;
   if (scene.lights.size <= realtime::kMaxFastLights) {
     for (uint32_t i = 0; i < scene.lights.size; ++i) {
       sum += visible_light(
-          scene, i, path.ray, tmax, path.from, path.pdf_bsdf, active, [] { return F(1.0f); },
+          scene, i, path.ray, tmax, path.from, path.pdf_bsdf, active,
+          [&] {
+            F probability = 1.0f;
+            each_lane(active & lists.known, [&](int at) {
+              set_lane(&probability, at, lamp_probability(world, lists, path, i, at));
+            });
+            return probability;
+          },
           clear);
     }
     return sum;
@@ -247,7 +334,7 @@ GLOAM_HD Vec3Of<F> lamps_met(const SceneView& scene, const paths::State<F>& path
     light_tree::each_shown(scene.light_tree, ray, most, [&](uint32_t i) {
       light += visible_light<float>(
           scene, i, ray, most, lane(path.from, at), lane(path.pdf_bsdf, at), true,
-          [&] { return lamp_probability(scene, path, i, at); }, clear);
+          [&] { return lamp_probability(world, lists, path, i, at); }, clear);
     });
     set_lane(&sum, at, light);
   });

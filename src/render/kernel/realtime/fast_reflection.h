@@ -24,6 +24,7 @@ struct ReflectionOf {
   F pdf = 0.0f;                             ///< of the ray's direction [1/sr]
   MaskOf<F> flames = true;                  ///< the ray shows the emission of media
   Vec3Of<F> from, normal;                   ///< the surface [m], and its geometric normal
+  LampListsOf<F> lists;                     ///< lamps of the surface
   SamplerOf<F> sampler;
 };
 
@@ -39,6 +40,7 @@ GLOAM_HD void copy_lane(const ReflectionOf<F>& from, int i, ReflectionOf<F>* to,
   set_lane(&to->flames, k, lane(from.flames, i));
   set_lane(&to->from, k, lane(from.from, i));
   set_lane(&to->normal, k, lane(from.normal, i));
+  to->lists.take_lane(k, from.lists, i);
   to->sampler.take_lane(k, from.sampler, i);
 }
 
@@ -53,12 +55,15 @@ GLOAM_HD Vec3Of<F> trace_reflection(const FastWorld<Tracer>& world, const Reflec
   path.from = r.from;
   path.pdf_bsdf = r.pdf;
   path.sampler = r.sampler;
-  if (world.scene.lights.size > realtime::kMaxFastLights) {  // for the probabilities of lamps met
-    fasts::prepare_light_sampler(world.scene, r.from, r.normal, active, realtime::kGlowAmongLamps,
+  const MaskOf<F> unlisted = active & !r.lists.known;
+  if (world.scene.lights.size > realtime::kMaxFastLights && any(unlisted)) {
+    // For the probabilities of lamps met.
+    fasts::prepare_light_sampler(world.scene, r.from, r.normal, unlisted, realtime::kGlowAmongLamps,
                                  &path.light_sampler);
   }
   fasts::GatherOptionsOf<F> options;
   options.counts_lamps = true;
+  options.lists = r.lists;
   options.flames = r.flames;
   options.near_flames = !r.flames;
   const Vec3Of<F> light = fasts::gather(world, options, active, &path, requests).light;

@@ -46,8 +46,16 @@ struct FastSampleOf {
 };
 
 /// Requests of a camera ray per lane: for the first solid surface, for reflections of panes in
-/// front, for such a pane, for the air. Each kind has Lanes<F>::kCount in a row.
-enum FastRequest { kSolidRequest, kReflectionRequest, kPaneRequest, kAirRequest, kFastRequests };
+/// front, for such a pane, for the air, for the lamps of a surface. Each kind has
+/// Lanes<F>::kCount in a row.
+enum FastRequest {
+  kSolidRequest,
+  kReflectionRequest,
+  kPaneRequest,
+  kAirRequest,
+  kLampRequest,
+  kFastRequests
+};
 
 namespace fasts {
 
@@ -104,6 +112,7 @@ class CameraRays {
     Mask solid{}, pane{};             ///< opaque, and not
     Mask traced{};                    ///< a ray shows the reflection
     Mask borrows{};                   ///< lanes that take shadow rays' results of the lane beside
+    LampListsOf<F> lists{};           ///< its lamps
     LampLightOf<F> lamps{};           ///< direct light
     Vec3Of<F> cached{};               ///< indirect light on panes [cd/m²]
     Vec3Of<F> reflected{};            ///< directional albedo of the specular part
@@ -149,9 +158,25 @@ class CameraRays {
     at->borrows = even_quads<F>(at->solid, at->hit.instance, s.v.normal) & !pixels_.leaders.of_pair;
   }
 
+  /// Finds the surface's list of lamps, and asks for it.
+  GLOAM_HD void look_up_lamps(Vertex* at) {
+    if (world_.lamps == nullptr) return;
+    CachePlaceOf<F> place = place_of(at->surface.v);
+    place.n = at->surface.v.geometric;
+    CacheRequest asked[kLanes] = {};
+    ask_cells(*world_.lamps, place, active_, in_all_lanes<F>({0.5f, 0.5f, 0.0f}), 0, asked);
+    each_lane(active_, [&](int i) {
+      const int row = find_cell(*world_.lamps, asked[i].key);
+      if (row >= 0) at->lists.set(i, &world_.lamps->lists[static_cast<uint32_t>(row)]);
+      requests_[kLampRequest * kLanes + i] = asked[i];
+    });
+  }
+
   GLOAM_HD void sample_lamps(Vertex* at) {
+    look_up_lamps(at);
     LampOptionsOf<F> options;
     options.active = active_;
+    options.lists = at->lists;
     options.traced = at->traced;
     options.borrows = at->borrows;
     options.every = world_.scene.lights.size <= realtime::kMaxFastLights;
@@ -217,6 +242,7 @@ class CameraRays {
     r.flames = !blurs_flames(v, s.shiny);
     r.from = v.p;
     r.normal = v.geometric;
+    r.lists = at->lists;
     r.sampler = path_.sampler;
     use.weight = sample.weight;
     use.albedo = at->reflected;

@@ -42,15 +42,19 @@ struct AirHome {
   bool sees_all = true;  ///< that may ask the cell; else light differs on both sides of a wall
 };
 
-struct IrradianceCacheView {
+/// The cells that are there, and their size.
+struct CellGrid {
   DeviceSpan<const uint64_t> keys;   ///< open addressing, size a power of two; 0 = free
-  DeviceSpan<const uint32_t> cells;  ///< row of `light` of each key
+  DeviceSpan<const uint32_t> cells;  ///< row of each key
+  Vec3f eye;
+  float edge_per_metre = 0.03f;  ///< edge of a cell over its distance from the eye
+};
+
+struct IrradianceCacheView : CellGrid {
   DeviceSpan<const CellLight> light;
   DeviceSpan<const AirHome> homes;  ///< of cells of air, in the rows of `light`
   Vec3f mean;                       ///< of all cells, for those that are not there yet
-  Vec3f eye;
-  bool lamps_move = false;       ///< then what they give the air is not what it was
-  float edge_per_metre = 0.03f;  ///< edge of a cell over its distance from the eye
+  bool lamps_move = false;          ///< then what they give the air is not what it was
 };
 
 namespace caches {
@@ -128,12 +132,12 @@ struct CacheCellOf {
 /// The cells for surfaces at p with the normals n. `jitter` in [0, 1)³ blurs the borders of cells,
 /// facings and sizes; `coarser`: doublings of the edge.
 template <class F>
-GLOAM_HD CacheCellOf<F> cache_cell(const IrradianceCacheView& cache, Vec3Of<F> p, Vec3Of<F> n,
-                                   UintOf<F> side, Vec3Of<F> jitter, uint32_t coarser) {
-  const Vec3Of<F> from_eye = p - in_all_lanes<F>(cache.eye);
+GLOAM_HD CacheCellOf<F> cache_cell(const CellGrid& grid, Vec3Of<F> p, Vec3Of<F> n, UintOf<F> side,
+                                   Vec3Of<F> jitter, uint32_t coarser) {
+  const Vec3Of<F> from_eye = p - in_all_lanes<F>(grid.eye);
   // The greatest power of two up to edge (1 + jitter), so that sizes blend.
   const F wanted =
-      max(square_root(dot(from_eye, from_eye)) * cache.edge_per_metre, F(realtime::kLeastEdge)) *
+      max(square_root(dot(from_eye, from_eye)) * grid.edge_per_metre, F(realtime::kLeastEdge)) *
       (1.0f + jitter.z);
   CacheCellOf<F> cell;
   cell.exponent = (to_bits(wanted) >> 23) + coarser;
@@ -171,9 +175,9 @@ GLOAM_HD uint64_t cache_key(const CacheCellOf<F>& cell, int i) {
   }
   return key;
 }
-GLOAM_HD uint64_t cache_key(const IrradianceCacheView& cache, Vec3f p, Vec3f n, uint32_t side,
-                            Vec3f jitter, uint32_t coarser) {
-  return cache_key(cache_cell<float>(cache, p, n, side, jitter, coarser), 0);
+GLOAM_HD uint64_t cache_key(const CellGrid& grid, Vec3f p, Vec3f n, uint32_t side, Vec3f jitter,
+                            uint32_t coarser) {
+  return cache_key(cache_cell<float>(grid, p, n, side, jitter, coarser), 0);
 }
 
 namespace caches {
@@ -198,12 +202,12 @@ GLOAM_HD bool is_seen(const Tracer& tracer, const AirHome& home, Vec3f p_W) {
 }  // namespace caches
 
 /// Row of the key's cell, or -1; of one that is not known, too.
-GLOAM_HD int find_cell(const IrradianceCacheView& cache, uint64_t key) {
-  if (key == 0 || cache.keys.empty()) return -1;
-  for (uint32_t slot = caches::slot_of(key, cache.keys.size);;
-       slot = (slot + 1) & (cache.keys.size - 1u)) {
-    if (cache.keys[slot] == key) return static_cast<int>(cache.cells[slot]);
-    if (cache.keys[slot] == 0) return -1;
+GLOAM_HD int find_cell(const CellGrid& grid, uint64_t key) {
+  if (key == 0 || grid.keys.empty()) return -1;
+  for (uint32_t slot = caches::slot_of(key, grid.keys.size);;
+       slot = (slot + 1) & (grid.keys.size - 1u)) {
+    if (grid.keys[slot] == key) return static_cast<int>(grid.cells[slot]);
+    if (grid.keys[slot] == 0) return -1;
   }
 }
 

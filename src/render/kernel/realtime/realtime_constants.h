@@ -17,6 +17,24 @@ inline constexpr uint32_t kSampledLights = 4;
 /// where lights are too many to be weighed against them; 0 to 1.
 inline constexpr float kGlowProbability = 0.5f, kGlowAmongLamps = 1.0f / kSampledLights;
 
+// Lamps by cell.
+
+/// Edge of a lamp cell in the picture [px]: in larger cells more surfaces lie in a penumbra,
+/// smaller ones cost rays.
+inline constexpr float kLampCellPixels = 10;
+/// Visible lamps of a cell up to which a surface takes a sample of each, otherwise kSampledLights
+/// in all; 1 to 40. Each costs an evaluation of the BSDF.
+inline constexpr uint32_t kMaxLampsOfSurface = 8;
+/// Light of all lamps that are not looked at, over that of the lamps seen so far, below which a
+/// cell leaves them out; 0 to 1.
+inline constexpr float kNegligibleLamps = 0.01f;
+/// Growth of a lamp's strength since a cell was made up to which its list holds.
+inline constexpr float kMaxLampGrowth = 1.5f;
+/// Cells that are looked at once more in a picture, and pictures after which a cell that nothing
+/// asks for is dropped.
+inline constexpr size_t kOldLampCells = 2000;
+inline constexpr uint32_t kLampCellLifetime = 60;
+
 // Reflections.
 
 /// Roughness above which a surface reflects the cache's light instead of tracing a ray; 0 to 1.
