@@ -2,12 +2,14 @@
 // at the same instants, for bench/fast_error.py to compare.
 //
 //   fast_pictures SCENE CAMERA OUT [--size WxH] [--rate HZ] [--frames N] [--at I,J …] [--spp N]
-//                 [--seed N] [--references FOLDER]
+//                 [--seed N] [--denoise] [--references FOLDER]
 //
+// CAMERA is one of the scene's, or FROM..TO: the free camera on its way from one to the other.
 // Writes OUT/fast_I.png and OUT/path_I.png for the frames I, J … (default: the last), and prints
-// "frame I mean FAST PATH" with the mean luminance of both [cd/m²]. The path tier's picture is the
-// mean of two with half of the samples each, half_0_I.png and half_1_I.png, which tell how much
-// noise is left in it. In FOLDER they are kept for the next time.
+// "frame I mean R G B / R G B" with the mean radiance of the fast and the path tier [cd/m²]. The
+// path tier's picture is the mean of two with half of the samples each, half_0_I.png and
+// half_1_I.png, which tell how much noise is left in it. With --denoise the two are denoised, which
+// keeps their means. In FOLDER they are kept for the next time.
 
 #include <fmt/format.h>
 
@@ -23,10 +25,9 @@
 #include "base/hash.h"
 #include "base/vec.h"
 #include "bench/command_line.h"
-#include "gloam/scene.h"
+#include "bench/moving_scene.h"
 #include "render/film/png.h"
 #include "render/film/tone_map.h"
-#include "runtime/live_simulation.h"
 
 namespace gloam {
 namespace {
@@ -34,50 +35,50 @@ namespace {
 struct Options {
   std::string model, camera, out, references;
   int width = 320, height = 240, rate = 20, frames = 20, spp = 512;
-  int seed = 1;  ///< of the fast tier
+  int seed = 1;          ///< of the fast tier
+  bool denoise = false;  ///< the path tier's
   std::set<int> at;
 };
 
 using Radiance = std::vector<float>;  // [cd/m²], (height x width x 3)
 
-double mean_luminance(const Radiance& radiance) {
-  double sum = 0;
-  const size_t n = radiance.size() / 3;
-  for (size_t i = 0; i < n; ++i) {
-    sum += luminance(Vec3f{radiance[3 * i], radiance[3 * i + 1], radiance[3 * i + 2]});
-  }
-  return sum / static_cast<double>(n);
+/// "R G B" of the mean over the pixels.
+std::string mean_of(const Radiance& radiance) {
+  std::array<double, 3> sum{};
+  for (size_t i = 0; i < radiance.size(); ++i) sum[i % 3] += static_cast<double>(radiance[i]);
+  const auto n = static_cast<double>(radiance.size() / 3);
+  return fmt::format("{:.6g} {:.6g} {:.6g}", sum[0] / n, sum[1] / n, sum[2] / n);
 }
 
-/// What takes pictures of one instant.
+/// What takes pictures of the scene's instant.
 struct Studio {
-  SharedRenderer& shared;
-  CameraRequest request;
+  const MovingScene& scene;
+  CameraRequest request;  ///< of the path tier
 
-  Result<Radiance> path_picture(const PoseFrame& now, const PoseFrame& before, int spp,
-                                uint64_t seed) const {
+  Result<Radiance> path_picture(int spp, uint64_t seed) const {
     CameraRequest path = request;
-    path.render.tier = "path";
     path.render.spp = spp;
-    path.render.denoise = false;  // it would move what is to be told from the fast tier's
-    GLOAM_TRY(const auto sensor, CameraSensor::create(shared.description, path, seed));
-    return sensor->capture(*shared.renderer, shared.turns, now, before, 0)->radiance;
+    GLOAM_TRY(const auto sensor, CameraSensor::create(scene.shared->description, path, seed));
+    return sensor
+        ->capture(*scene.shared->renderer, scene.shared->turns, scene.now, scene.previous, 0)
+        ->radiance;
   }
 };
 
 /// What tells a scene's references apart from others. The path tier has no bias, so they stay true
 /// while its samples change.
-Result<uint64_t> key_of(const Options& options) {
+Result<uint64_t> key_of(const Options& options, const MovingScene& scene) {
   GLOAM_TRY(const std::vector<uint8_t> text, read_file(options.model));
-  const int taken[] = {options.width, options.height, options.rate, options.spp};
-  return hash_span(std::span<const uint8_t>(text), hash_span(std::span<const int>(taken), 0));
+  const int taken[] = {options.width, options.height, options.rate, options.spp, options.denoise};
+  const uint64_t place = scene.simulation->world().compiled()->place_hash;
+  const uint64_t camera = hash_bytes(options.camera.data(), options.camera.size(), place);
+  return hash_span(std::span<const uint8_t>(text), hash_span(std::span<const int>(taken), camera));
 }
 
 /// Two independent pictures of the path tier with half of the samples each; those called `name` in
 /// `folder` if they have been taken before.
-Result<std::array<Radiance, 2>> references(const Studio& studio, const PoseFrame& now,
-                                           const PoseFrame& before, int spp,
-                                           const std::string& folder, const std::string& name) {
+Result<std::array<Radiance, 2>> references(const Studio& studio, int spp, const std::string& folder,
+                                           const std::string& name) {
   std::array<Radiance, 2> halves;
   std::filesystem::path kept;
   if (!folder.empty()) {
@@ -97,7 +98,7 @@ Result<std::array<Radiance, 2>> references(const Studio& studio, const PoseFrame
     }
   }
   for (uint64_t i = 0; i < 2; ++i) {
-    GLOAM_TRY(halves[i], studio.path_picture(now, before, std::max(1, spp / 2), 2 + i));
+    GLOAM_TRY(halves[i], studio.path_picture(std::max(1, spp / 2), 2 + i));
   }
   if (!folder.empty()) {
     Radiance both = halves[0];
@@ -121,52 +122,55 @@ Status write_picture(const Options& options, const std::string& name, const Radi
                            encode_png8(options.width, options.height, 3, rgb));
 }
 
+/// Both tiers' pictures of one instant, and their means.
+Status compare(const Options& options, const Studio& studio, const std::string& name, int frame,
+               const Radiance& fast) {
+  const RenderDescription& description = studio.scene.shared->description;
+  const auto ev100 = static_cast<float>(
+      studio.request.render.ev100.value_or(static_cast<double>(description.ev100)));
+  GLOAM_TRY(const auto halves, references(studio, options.spp, options.references, name));
+  Radiance path = halves[0];
+  for (size_t k = 0; k < path.size(); ++k) path[k] = 0.5f * (path[k] + halves[1][k]);
+  GLOAM_TRY_STATUS(write_picture(options, fmt::format("fast_{}", frame), fast, ev100));
+  GLOAM_TRY_STATUS(write_picture(options, fmt::format("path_{}", frame), path, ev100));
+  for (size_t k = 0; k < 2; ++k)
+    GLOAM_TRY_STATUS(write_picture(options, fmt::format("half_{}_{}", k, frame), halves[k], ev100));
+  fmt::print("frame {} mean {} / {}\n", frame, mean_of(fast), mean_of(path));
+  return {};
+}
+
 Status run(const Options& options) {
-  GLOAM_TRY(const Scene scene, load_scene(options.model));
-  GLOAM_TRY(const World world, World::compile(scene));
-  GLOAM_TRY(const auto simulation, LiveSimulation::create(world, {.pace = Pace::kLockstep}));
-  GLOAM_TRY(const auto shared, simulation->renderer());
-  GLOAM_TRY(const auto solver, PoseSolver::create(world.compiled()));
+  GLOAM_TRY(const Scene file, load_scene(options.model));
+  GLOAM_TRY(const auto scene, MovingScene::compile(file));
+  GLOAM_TRY_STATUS(scene->open_renderer());
+  GLOAM_TRY_STATUS(scene->solve());
+  GLOAM_TRY(const auto camera, BenchCamera::find(*scene, options.camera));
   CameraRequest request;
-  request.camera = options.camera;
+  request.camera = camera.name();
   request.width = options.width, request.height = options.height;
   request.outputs = {"radiance"};
-  request.render = scene.render;
-  const Studio studio{*shared, request};
+  request.render = file.render;
   request.render.tier = "fast";
-  GLOAM_TRY(const auto fast, CameraSensor::create(shared->description, request,
-                                                  static_cast<uint64_t>(options.seed)));
-  const auto ev100 = static_cast<float>(
-      scene.render.ev100.value_or(static_cast<double>(shared->description.ev100)));
-
-  GLOAM_TRY(const uint64_t key, key_of(options));
+  SharedRenderer& shared = *scene->shared;
+  GLOAM_TRY(const auto fast,
+            CameraSensor::create(shared.description, request, static_cast<uint64_t>(options.seed)));
+  request.render.tier = "path";
+  request.render.error.reset();
+  // Without --denoise: a filter would move what is to be told from the fast tier's.
+  request.render.denoise = options.denoise;
+  Studio studio{*scene, request};
+  GLOAM_TRY(const uint64_t key, key_of(options, *scene));
   const std::string stem = std::filesystem::path(options.model).stem().string();
-  const Rational step_rate = simulation->step_rate();
-  const auto step_of = [&](int frame) {
-    return static_cast<int64_t>(frame) * step_rate.num / (step_rate.den * options.rate);
-  };
-  PoseFrame now, previous;
   for (int i = 0; i < options.frames; ++i) {
-    if (const int64_t ahead = step_of(i) - simulation->latest().step(); ahead > 0) {
-      GLOAM_TRY_STATUS(simulation->step(ahead));
-    }
-    GLOAM_TRY_STATUS(solver->solve(simulation->latest(), now));
-    const PoseFrame& before = i > 0 ? previous : now;
-    const auto quick = fast->capture(*shared->renderer, shared->turns, now, before, i);
-    if (options.at.contains(i)) {
-      GLOAM_TRY(const auto halves, references(studio, now, before, options.spp, options.references,
-                                              fmt::format("{}_{}_{}", stem, hash_to_hex(key), i)));
-      Radiance path = halves[0];
-      for (size_t k = 0; k < path.size(); ++k) path[k] = 0.5f * (path[k] + halves[1][k]);
-      GLOAM_TRY_STATUS(write_picture(options, fmt::format("fast_{}", i), quick->radiance, ev100));
-      GLOAM_TRY_STATUS(write_picture(options, fmt::format("path_{}", i), path, ev100));
-      for (int k = 0; k < 2; ++k) {
-        GLOAM_TRY_STATUS(write_picture(options, fmt::format("half_{}_{}", k, i), halves[k], ev100));
-      }
-      fmt::print("frame {} mean {:.4f} {:.4f}\n", i, mean_luminance(quick->radiance),
-                 mean_luminance(path));
-    }
-    std::swap(now, previous);
+    GLOAM_TRY_STATUS(scene->step_to(i, options.rate));
+    if (i > 0) GLOAM_TRY_STATUS(scene->solve());
+    studio.request.X_WC = camera.pose_at(static_cast<double>(i) / options.rate);
+    if (studio.request.X_WC) fast->set_free_pose(*studio.request.X_WC);
+    const auto picture =
+        fast->capture(*shared.renderer, shared.turns, scene->now, scene->previous, i);
+    if (!options.at.contains(i)) continue;
+    GLOAM_TRY_STATUS(compare(options, studio, fmt::format("{}_{}_{}", stem, hash_to_hex(key), i), i,
+                             picture->radiance));
   }
   return {};
 }
@@ -182,6 +186,7 @@ int main(int argc, char** argv) {
   line.value("--frames", &options.frames);
   line.value("--spp", &options.spp);
   line.value("--seed", &options.seed);
+  options.denoise = line.flag("--denoise");
   line.value("--references", &options.references);
   std::string frames;
   line.value("--at", &frames);
@@ -191,7 +196,8 @@ int main(int argc, char** argv) {
   if (words.size() != 3) {
     fmt::print(stderr,
                "usage: fast_pictures SCENE CAMERA OUT [--size WxH] [--rate HZ] [--frames N] "
-               "[--at I,J] [--spp N] [--seed N] [--references FOLDER]\n");
+               "[--at I,J] [--spp N] [--seed N] [--denoise] [--references FOLDER]\n"
+               "CAMERA is a name or FROM..TO\n");
     return 2;
   }
   options.model = words[0], options.camera = words[1], options.out = words[2];
