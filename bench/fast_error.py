@@ -1,20 +1,24 @@
-"""How far the fast tier's pictures are from the path tier's: LDR-FLIP on five moving scenes.
+"""How far the fast tier's pictures are from the path tier's: LDR-FLIP and mean radiance on moving scenes.
 
-    python3 bench/fast_error.py [--quick] [--only NAME] [--seeds N] [--samples N] [--keep FOLDER]
+    python3 bench/fast_error.py [--set small|realistic] [--quick] [--only NAME] [--seeds N] [--samples N] [--keep FOLDER] [--json]
 
-Each scene runs at 20 pictures a second; at some of them the path tier takes the same instant with
-many samples, which are kept in .cache/fast_references until the scene's file changes (remove
-them where the models it includes do). Prints the mean and the 95th percentile per pixel of
-LDR-FLIP (bench/flip.py), means over seeds of the fast tier, the worst seed's mean, and how much of
-it may be noise of the path tier's own pictures: two of them with half of the samples each differ by
-that. Needs numpy and Pillow.
+Each scene runs at 20 pictures a second; at some of them the path tier takes the same instant with many samples, which
+are kept in .cache/fast_references until the scene's file or its generated place changes (remove them where the models
+it includes do, or their materials). Prints the mean and the 95th percentile per pixel of LDR-FLIP (bench/flip.py),
+means over seeds of the fast tier, the worst seed's mean, how much of it may be noise of the path tier's own pictures
+(two of them with half of the samples each differ by that), and how far the mean radiance is off, per channel. The set
+`small` has five small scenes; `realistic` has the twelve of bench/realistic_scenes, through which the camera moves, and
+denoised references of few samples. Needs numpy and Pillow.
 """
 
 import argparse
+import json
+import os
 import pathlib
 import subprocess
 import sys
 import tempfile
+from dataclasses import dataclass
 
 import numpy as np
 from PIL import Image
@@ -23,57 +27,102 @@ sys.path.insert(0, str(pathlib.Path(__file__).parent))
 from flip import flip  # noqa: E402
 
 ROOT = pathlib.Path(__file__).resolve().parents[1]
-# Scene and the pictures that are compared: the first, one in motion, one later.
-SCENES = {"moving_lamp": (0, 8, 20), "closing_door": (0, 6, 20), "running_robot": (0, 10, 20),
-          "glass_and_mirrors": (0, 8, 20), "yard": (0, 8, 20)}
-MOST_MEAN, MOST_P95 = 0.08, 0.25
-SAMPLES = 8192  # of the references: seconds each on an NVIDIA card, up to 20 minutes on two cores
+BIN = ROOT / "build" / os.environ.get("GLOAM_PRESET", "release") / "bin"
+CHANNELS = ("red", "green", "blue")
+
+
+@dataclass
+class Scenes:
+    folder: str
+    camera: str
+    at: dict  # the pictures that are compared, by scene; --quick takes the second
+    samples: int  # of a reference's pixel
+    seeds: int  # of the fast tier
+    denoise: bool  # the references
+    bars: dict
+
+
+MEAN, P95, RADIANCE = "FLIP mean", "FLIP 95 %", "radiance [%]"
+SETS = {
+    # The first picture, one in motion, one later. A reference takes seconds on an NVIDIA card, up to 20 minutes on two cores.
+    "small": Scenes("fast_scenes", "view", {"moving_lamp": (0, 8, 20), "closing_door": (0, 6, 20), "running_robot": (0, 10, 20),
+                                            "glass_and_mirrors": (0, 8, 20), "yard": (0, 8, 20)}, 8192, 8, False, {MEAN: 0.08, P95: 0.25}),
+    # After a few pictures and after a second of motion. A reference takes at most 20 s on two cores.
+    "realistic": Scenes("realistic_scenes", "from..to", dict.fromkeys(
+        sorted(p.stem for p in (ROOT / "bench" / "realistic_scenes").glob("*.toml")), (4, 20)), 32, 1, True, {MEAN: 0.08, RADIANCE: 5}),
+}
 
 
 def picture(path):
     return np.asarray(Image.open(path).convert("RGB")) / 255.0
 
 
-def compare(scene, at, seed, samples, folder):
-    """Rows of (mean, 95th percentile, mean between the path tier's halves, brightness of both), a frame each."""
-    lines = subprocess.run(
-        [ROOT / "build/release/bin/bench_fast_pictures", ROOT / "bench/fast_scenes" / f"{scene}.toml",
-         "view", folder, "--frames", str(max(at) + 1), "--at", ",".join(map(str, at)), "--seed", str(seed),
-         "--spp", str(samples), "--references", ROOT / ".cache/fast_references"], check=True, capture_output=True, text=True).stdout.splitlines()
+def compare(scenes, scene, at, seed, samples, folder):
+    """A row per frame: mean and 95th percentile of FLIP, its mean between the path tier's halves, radiance of both (R G B each)."""
+    command = [BIN / "bench_fast_pictures", ROOT / "bench" / scenes.folder / f"{scene}.toml", scenes.camera, folder,
+               "--frames", str(max(at) + 1), "--at", ",".join(map(str, at)), "--seed", str(seed), "--spp", str(samples),
+               "--references", ROOT / ".cache" / "fast_references", *(["--denoise"] if scenes.denoise else [])]
+    result = subprocess.run(command, capture_output=True, text=True)
+    if result.returncode != 0:
+        sys.exit(f"{scene}: {(result.stderr or result.stdout).strip()}")
     rows = []
-    for frame, line in zip(at, lines):
+    for frame, line in zip(at, result.stdout.splitlines()):
         path, fast = (picture(f"{folder}/{who}_{frame}.png") for who in ("path", "fast"))
         error = flip(path, fast)
         noise = flip(*(picture(f"{folder}/half_{half}_{frame}.png") for half in (0, 1))).mean()
         strip = np.concatenate([path, fast, np.repeat(error[..., None], 3, -1)], 1)
         Image.fromarray((strip * 255).astype(np.uint8)).save(f"{folder}/{scene}_{frame}.png")
-        rows.append((error.mean(), np.percentile(error, 95), noise, *map(float, line.split()[3:5])))
+        of_fast, of_path = (list(map(float, part.split())) for part in line.split("mean")[1].split("/"))
+        rows.append([error.mean(), np.percentile(error, 95), noise, *of_fast, *of_path])
     return rows
 
 
+def figures(scene, frame, of_seeds):
+    """What is printed of one frame."""
+    mean, p95, noise = of_seeds[:, :3].mean(axis=0)
+    fast, path = of_seeds[:, 3:6].mean(axis=0), of_seeds[:, 6:9].mean(axis=0)
+    off = 100 * (fast / np.maximum(path, 1e-12) - 1)
+    return {"scene": scene, "picture": frame, MEAN: mean, P95: p95, RADIANCE: float(np.abs(off).max()), "worst seed": of_seeds[:, 0].max(),
+            "halves": noise, "off": dict(zip(CHANNELS, off)), "path": dict(zip(CHANNELS, path))}
+
+
+def line_of(row):
+    off = ", ".join(f"{row['off'][c]:+.1f}" for c in CHANNELS)
+    return (f"{row['scene']:19} picture {row['picture']:2}: FLIP mean {row[MEAN]:.4f} (worst seed {row['worst seed']:.4f}), 95 % {row[P95]:.4f} "
+            f"(halves of the reference {row['halves']:.4f}); radiance {off} % of {row['path']['green']:.3g} cd/m²")
+
+
 def main():
-    parser = argparse.ArgumentParser(description=__doc__)
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--set", choices=SETS, default="small", help="of scenes (default small)")
     parser.add_argument("--quick", action="store_true", help="one picture of each scene")
     parser.add_argument("--only", help="one scene")
-    parser.add_argument("--seeds", type=int, default=8, help="of the fast tier (default 8)")
-    parser.add_argument("--samples", type=int, default=SAMPLES, help=f"of a reference's pixel (default {SAMPLES})")
+    parser.add_argument("--seeds", type=int, help="of the fast tier (default: " + ", ".join(f"{s.seeds} of {n}" for n, s in SETS.items()) + ")")
+    parser.add_argument("--samples", type=int,
+                        help="of a reference's pixel (default: " + ", ".join(f"{s.samples} of {n}" for n, s in SETS.items()) + ")")
     parser.add_argument("--keep", help="folder for the pictures")
+    parser.add_argument("--json", action="store_true", help="print one JSON object")
     arguments = parser.parse_args()
-    worst = [0.0, 0.0]
+    scenes = SETS[arguments.set]
+    if arguments.only and arguments.only not in scenes.at:
+        parser.error(f"there is no scene {arguments.only}; there are: {', '.join(scenes.at)}")
+    rows = []
     with tempfile.TemporaryDirectory() as spare:
-        folder = arguments.keep or spare
-        for scene, at in SCENES.items():
+        for scene, at in scenes.at.items():
             if arguments.only and scene != arguments.only:
                 continue
             at = at[1:2] if arguments.quick else at
-            runs = np.array([compare(scene, at, seed, arguments.samples, folder) for seed in range(1, arguments.seeds + 1)])
+            runs = np.array([compare(scenes, scene, at, seed, arguments.samples or scenes.samples, arguments.keep or spare)
+                             for seed in range(1, (arguments.seeds or scenes.seeds) + 1)])
             for frame, of_seeds in zip(at, runs.swapaxes(0, 1)):
-                mean, p95, noise, fast, path = of_seeds.mean(axis=0)
-                print(f"{scene:18} picture {frame:2}: FLIP mean {mean:.4f} (worst seed {of_seeds[:, 0].max():.4f}), 95 % {p95:.4f} "
-                      f"(halves of the reference {noise:.4f}); luminance {fast:.3f} / {path:.3f} cd/m²", flush=True)
-                worst = [max(worst[0], mean), max(worst[1], p95)]
-    print(f"worst: mean {worst[0]:.4f} (bar {MOST_MEAN}), 95 % {worst[1]:.4f} (bar {MOST_P95})")
-    return 0 if worst[0] <= MOST_MEAN and worst[1] <= MOST_P95 else 1
+                rows.append(figures(scene, frame, of_seeds))
+                print(line_of(rows[-1]), file=sys.stderr if arguments.json else sys.stdout, flush=True)
+    worst = {key: max(row[key] for row in rows) for key in (MEAN, P95, RADIANCE)}
+    if arguments.json:
+        print(json.dumps({"rows": rows, "worst": worst}))
+    else:
+        print("worst: " + ", ".join(f"{key} {value:.4f}" + (f" (bar {scenes.bars[key]})" if key in scenes.bars else "") for key, value in worst.items()))
+    return 0 if all(worst[key] <= bar for key, bar in scenes.bars.items()) else 1
 
 
 if __name__ == "__main__":

@@ -165,7 +165,9 @@ int main(int argc, char** argv) {
   line.value("--frames", &options.frames, 2);
   line.value("--spp", &options.spp);
   line.value("--out", &options.out);
-  if (help || line.words().size() != 1 || options.tier.empty()) {
+  const bool no_device =
+      !options.device.empty() && options.device != "cpu" && options.device != "cuda";
+  if (help || line.words().size() != 1 || options.tier.empty() || no_device) {
     fmt::print(help ? stdout : stderr,
                "usage: realistic_rate SCENE --tier fast|path|direct [--camera FROM..TO] "
                "[--size WxH] [--device cpu|cuda] [--frames N] [--spp N] [--out FOLDER] [--json]\n");

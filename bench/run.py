@@ -17,10 +17,14 @@ from pathlib import Path
 
 import measure
 import measure_card
+import measure_realistic
 from measure import ROOT, say
 
 HISTORY = ROOT / "bench" / "history"
-SUBJECTS = {**measure.ALL, **measure_card.ALL}  # with the seconds that each takes
+# With the seconds that each takes.
+ON_CPU = {**measure.ALL, **measure_realistic.ALL}
+ON_CARD = {**measure_card.ALL, **measure_realistic.CARD}
+SUBJECTS = {**ON_CPU, **ON_CARD}
 
 
 class Progress:
@@ -144,14 +148,14 @@ def measure_all(chosen, before, args):
 
 def main():
     parser = argparse.ArgumentParser(prog="./gloam bench", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter,
-                                     epilog="Measured: " + ", ".join(s.__name__ for s in measure.ALL) +
+                                     epilog="Measured: " + ", ".join(s.__name__ for s in ON_CPU) +
                                             "\nExample: ./gloam bench --only sim")
     parser.add_argument("--only", metavar="NAME", default="", help="only what has NAME in its name; not kept in the history")
     parser.add_argument("--quick", action="store_true", help="few repetitions, rough figures: to see that it works; not kept")
     parser.add_argument("--json", action="store_true", help="print the record of the run as JSON")
     parser.add_argument("--device", choices=["cpu", "cuda"], default="cpu", help="cuda: what an NVIDIA card does; not kept")
     args = parser.parse_args()
-    chosen = choose(args.only, measure_card.ALL if args.device == "cuda" else measure.ALL)
+    chosen = choose(args.only, ON_CARD if args.device == "cuda" else ON_CPU)
     here = machine()
     before = previous_run(here)
     busy = os.getloadavg()[0]

@@ -14,6 +14,7 @@ from e2e.support import PENDULUM, PROGRAM, ROOT, ProgramTest
 
 sys.path.insert(0, str(ROOT / "bench"))
 import measure  # noqa: E402
+import measure_realistic  # noqa: E402
 
 spec = importlib.util.spec_from_file_location("bench_run", ROOT / "bench" / "run.py")  # tests/ has a run.py, too
 bench = importlib.util.module_from_spec(spec)
@@ -63,13 +64,43 @@ class Programs(ProgramTest):
         self.assertGreater(float(words[0]), 0)
         self.assertEqual(picture.read_bytes()[:4], b"\x89PNG")
 
+    def test_realistic_scene_is_timed_and_its_images_written(self):
+        scene, out = ROOT / "bench" / "realistic_scenes" / "plain_room.toml", self.folder / "images"
+        data = json.loads(self.call("realistic_rate", scene, "--tier", "fast", "--device", "cpu", "--size", "32x24", "--frames", 3, "--out", out, "--json"))
+        self.assertEqual((data["scene"], data["tier"], data["width"], data["height"], data["frames"]), ("plain_room", "fast", 32, 24, 3))
+        self.assertTrue(0 < data["image_ms"] <= data["image_p95_ms"], data)
+        self.assertTrue(0 < data["renderer_ms"] < data["first_ms"], data)
+        self.assertGreater(data["load_ms"], 0)
+        self.assertAlmostEqual(data["real_time_factor"], 50 / data["physics_ms"], delta=0.01 * data["real_time_factor"])
+        self.assertGreater(data["rays"], 32 * 24)
+        images = sorted(path.read_bytes() for path in out.iterdir())
+        self.assertEqual(len(set(images)), 3)  # the camera moves, the robot too
+
+    def test_realistic_rate_rejects_wrong_arguments(self):
+        scene = ROOT / "bench" / "realistic_scenes" / "plain_room.toml"
+        for arguments, code, message in [(["--help"], 0, "usage: "), ([scene], 2, "usage: "), (["--tier", "fast"], 2, "usage: "),
+                                         ([scene, "--tier", "slow"], None, "path, fast, direct"), ([scene, "--tier", "fast", "--camera", "from..two"], None, "'to'"),
+                                         ([scene, "--tier", "fast", "--camera", "from..from"], None, "same place"),
+                                         ([scene, "--tier", "fast", "--siez", "9x9"], 2, "usage: ")]:
+            result = subprocess.run([str(PROGRAM.parent / "bench_realistic_rate"), *map(str, arguments)], capture_output=True, text=True, timeout=120)
+            self.assertIn(message, result.stdout if code == 0 else result.stderr, arguments)
+            self.assertEqual(result.returncode, code if code is not None else result.returncode or -1, arguments)
+
+
+class Realistic(unittest.TestCase):
+    def test_every_row_has_its_scenes(self):
+        scenes = {path.stem for path in measure_realistic.SCENES.glob("*.toml")}
+        self.assertEqual(len(scenes), 12)
+        for members, _ in measure_realistic.IMAGES.values():
+            self.assertLessEqual(set(members), scenes)
+
 
 class Runs(unittest.TestCase):
     def test_a_wrong_name_lists_the_right_ones(self):
         result = subprocess.run([*BENCH, "--only", "nonsense"], capture_output=True, text=True)
         self.assertEqual(result.returncode, 2)
         self.assertEqual(result.stdout, "")
-        for subject in measure.ALL:
+        for subject in bench.ON_CPU:
             self.assertIn(subject.__name__, result.stderr)
 
     def test_a_partial_run_prints_its_record_and_is_not_kept(self):
