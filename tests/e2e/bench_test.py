@@ -78,13 +78,15 @@ class Programs(ProgramTest):
 
     def test_realistic_rate_rejects_wrong_arguments(self):
         scene = ROOT / "bench" / "realistic_scenes" / "plain_room.toml"
+        fast = [scene, "--tier", "fast"]
         for arguments, code, message in [(["--help"], 0, "usage: "), ([scene], 2, "usage: "), (["--tier", "fast"], 2, "usage: "),
-                                         ([scene, "--tier", "slow"], None, "path, fast, direct"), ([scene, "--tier", "fast", "--camera", "from..two"], None, "'to'"),
-                                         ([scene, "--tier", "fast", "--camera", "from..from"], None, "same place"),
-                                         ([scene, "--tier", "fast", "--siez", "9x9"], 2, "usage: ")]:
-            result = subprocess.run([str(PROGRAM.parent / "bench_realistic_rate"), *map(str, arguments)], capture_output=True, text=True, timeout=120)
-            self.assertIn(message, result.stdout if code == 0 else result.stderr, arguments)
-            self.assertEqual(result.returncode, code if code is not None else result.returncode or -1, arguments)
+                                         ([*fast, "--siez", "9x9"], 2, "usage: "), ([*fast, "--device", "gpu"], 2, "usage: "),
+                                         ([scene, "--tier", "slow"], 1, "path, fast, direct"), ([*fast, "--size", "0x5"], 2, "0 x 5"),
+                                         ([*fast, "--camera", "from..two"], 1, "did you mean 'to'"), ([*fast, "--camera", "from..from"], 1, "same place")]:
+            result = subprocess.run([str(PROGRAM.parent / "bench_realistic_rate"), *map(str, arguments)], capture_output=True, text=True, timeout=120,
+                                    env={**os.environ, "GLOAM_CACHE": str(self.folder / "cache")})
+            self.assertEqual(result.returncode, code, arguments)
+            self.assertIn(message, result.stderr if code else result.stdout, arguments)
 
 
 class Realistic(unittest.TestCase):
