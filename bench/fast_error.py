@@ -1,6 +1,6 @@
 """How far the fast tier's pictures are from the path tier's: LDR-FLIP and mean radiance on moving scenes.
 
-    python3 bench/fast_error.py [--set small|realistic] [--quick] [--only NAME] [--seeds N] [--samples N] [--keep FOLDER] [--json]
+    python3 bench/fast_error.py [--set small|realistic] [--quick] [--only NAMES] [--seeds N] [--samples N] [--keep FOLDER] [--json]
 
 Each scene runs at 20 pictures a second; at some of them the path tier takes the same instant with many samples, which
 are kept in .cache/fast_references until the scene's file or its generated place changes (remove them where the models
@@ -96,7 +96,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--set", choices=SETS, default="small", help="of scenes (default small)")
     parser.add_argument("--quick", action="store_true", help="one picture of each scene")
-    parser.add_argument("--only", help="one scene")
+    parser.add_argument("--only", help="some of its scenes, separated by commas")
     parser.add_argument("--seeds", type=int, help="of the fast tier (default: " + ", ".join(f"{s.seeds} of {n}" for n, s in SETS.items()) + ")")
     parser.add_argument("--samples", type=int,
                         help="of a reference's pixel (default: " + ", ".join(f"{s.samples} of {n}" for n, s in SETS.items()) + ")")
@@ -104,14 +104,13 @@ def main():
     parser.add_argument("--json", action="store_true", help="print one JSON object")
     arguments = parser.parse_args()
     scenes = SETS[arguments.set]
-    if arguments.only and arguments.only not in scenes.at:
-        parser.error(f"there is no scene {arguments.only}; there are: {', '.join(scenes.at)}")
+    chosen = arguments.only.split(",") if arguments.only else list(scenes.at)
+    if unknown := set(chosen) - set(scenes.at):
+        parser.error(f"there is no scene {', '.join(sorted(unknown))}; there are: {', '.join(scenes.at)}")
     rows = []
     with tempfile.TemporaryDirectory() as spare:
-        for scene, at in scenes.at.items():
-            if arguments.only and scene != arguments.only:
-                continue
-            at = at[1:2] if arguments.quick else at
+        for scene in chosen:
+            at = scenes.at[scene][1:2] if arguments.quick else scenes.at[scene]
             runs = np.array([compare(scenes, scene, at, seed, arguments.samples or scenes.samples, arguments.keep or spare)
                              for seed in range(1, (arguments.seeds or scenes.seeds) + 1)])
             for frame, of_seeds in zip(at, runs.swapaxes(0, 1)):
