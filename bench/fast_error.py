@@ -31,25 +31,29 @@ BIN = ROOT / "build" / os.environ.get("GLOAM_PRESET", "release") / "bin"
 CHANNELS = ("red", "green", "blue")
 
 
+MEAN, P95, RADIANCE = "FLIP mean", "FLIP 95 %", "radiance [%]"
+
+
 @dataclass
 class Scenes:
     folder: str
     camera: str
-    at: dict  # the pictures that are compared, by scene; --quick takes the second
-    samples: int  # of a reference's pixel
+    of: dict  # by scene: samples of a reference's pixel; the pictures that are compared, of which --quick takes the second
     seeds: int  # of the fast tier
     denoise: bool  # the references
     bars: dict
 
 
-MEAN, P95, RADIANCE = "FLIP mean", "FLIP 95 %", "radiance [%]"
 SETS = {
     # The first picture, one in motion, one later. A reference takes seconds on an NVIDIA card, up to 20 minutes on two cores.
-    "small": Scenes("fast_scenes", "view", {"moving_lamp": (0, 8, 20), "closing_door": (0, 6, 20), "running_robot": (0, 10, 20),
-                                            "glass_and_mirrors": (0, 8, 20), "yard": (0, 8, 20)}, 8192, 8, False, {MEAN: 0.08, P95: 0.25}),
+    "small": Scenes("fast_scenes", "view", {"moving_lamp": (8192, (0, 8, 20)), "closing_door": (8192, (0, 6, 20)), "running_robot": (8192, (0, 10, 20)),
+                                            "glass_and_mirrors": (8192, (0, 8, 20)), "yard": (8192, (0, 8, 20))}, 8, False, {MEAN: 0.08, P95: 0.25}),
     # After a few pictures and after a second of motion. A reference takes at most 20 s on two cores.
-    "realistic": Scenes("realistic_scenes", "from..to", dict.fromkeys(
-        sorted(p.stem for p in (ROOT / "bench" / "realistic_scenes").glob("*.toml")), (4, 20)), 32, 1, True, {MEAN: 0.08, RADIANCE: 5}),
+    "realistic": Scenes("realistic_scenes", "from..to",
+                        {"demo_room": (64, (4, 20)), "plain_room": (256, (4, 20)), "house": (48, (4, 20)), "house_2": (48, (4, 20)),
+                         "bedroom": (48, (4, 20)), "office": (64, (4, 20)), "tunnel": (96, (4, 20)), "terrain": (64, (4, 20)),
+                         "warehouse": (48, (4, 20)), "rain": (32, (4, 20)), "adversity_house": (16, (4, 20)),
+                         "adversity_warehouse": (16, (4, 20))}, 1, True, {MEAN: 0.08, RADIANCE: 5}),
 }
 
 
@@ -98,20 +102,21 @@ def main():
     parser.add_argument("--quick", action="store_true", help="one picture of each scene")
     parser.add_argument("--only", help="some of its scenes, separated by commas")
     parser.add_argument("--seeds", type=int, help="of the fast tier (default: " + ", ".join(f"{s.seeds} of {n}" for n, s in SETS.items()) + ")")
-    parser.add_argument("--samples", type=int,
-                        help="of a reference's pixel (default: " + ", ".join(f"{s.samples} of {n}" for n, s in SETS.items()) + ")")
+    parser.add_argument("--samples", type=int, help="of a reference's pixel (default: " +
+                        ", ".join(f"{min(s.of.values())[0]} to {max(s.of.values())[0]} of {n}" for n, s in SETS.items()) + ")")
     parser.add_argument("--keep", help="folder for the pictures")
     parser.add_argument("--json", action="store_true", help="print one JSON object")
     arguments = parser.parse_args()
     scenes = SETS[arguments.set]
-    chosen = arguments.only.split(",") if arguments.only else list(scenes.at)
-    if unknown := set(chosen) - set(scenes.at):
-        parser.error(f"there is no scene {', '.join(sorted(unknown))}; there are: {', '.join(scenes.at)}")
+    chosen = arguments.only.split(",") if arguments.only else list(scenes.of)
+    if unknown := set(chosen) - set(scenes.of):
+        parser.error(f"there is no scene {', '.join(sorted(unknown))}; there are: {', '.join(scenes.of)}")
     rows = []
     with tempfile.TemporaryDirectory() as spare:
         for scene in chosen:
-            at = scenes.at[scene][1:2] if arguments.quick else scenes.at[scene]
-            runs = np.array([compare(scenes, scene, at, seed, arguments.samples or scenes.samples, arguments.keep or spare)
+            samples, at = scenes.of[scene]
+            at, samples = at[1:2] if arguments.quick else at, arguments.samples or samples
+            runs = np.array([compare(scenes, scene, at, seed, samples, arguments.keep or spare)
                              for seed in range(1, (arguments.seeds or scenes.seeds) + 1)])
             for frame, of_seeds in zip(at, runs.swapaxes(0, 1)):
                 rows.append(figures(scene, frame, of_seeds))
@@ -120,7 +125,8 @@ def main():
     if arguments.json:
         print(json.dumps({"rows": rows, "worst": worst}))
     else:
-        print("worst: " + ", ".join(f"{key} {value:.4f}" + (f" (bar {scenes.bars[key]})" if key in scenes.bars else "") for key, value in worst.items()))
+        bars = {key: f" (bar {bar})" for key, bar in scenes.bars.items()}
+        print("worst: " + ", ".join(f"{key} {value:.4f}{bars.get(key, '')}" for key, value in worst.items()))
     return 0 if all(worst[key] <= bar for key, bar in scenes.bars.items()) else 1
 
 

@@ -67,7 +67,7 @@ def rows(device, quick):
                       "the worst counts: " + ", ".join(f"{data['scene']} {data['first'][state]:.2f}" for data in each))
     error = fast_error("--set", "realistic", "--only", ",".join(scenes), *(["--quick", "--samples", 8] if quick else []))
     for key, name, required in (("FLIP mean", "mean LDR-FLIP against the path tier, worst scene", FLIP),
-                                ("radiance [%]", "mean radiance against the path tier, worst scene and channel [%]", RADIANCE)):
+                                ("radiance [%]", "mean radiance against the path tier, worst channel [%]", RADIANCE)):
         each = sorted(error["rows"], key=lambda row: -row[key])
         noise = (lambda row: f" (halves {row['halves']:.3f})") if key == "FLIP mean" else (lambda row: "")
         yield at_most(name, error["worst"][key], required, "; ".join(f"{row['scene']} {row['picture']}: {row[key]:.3g}{noise(row)}" for row in each))
