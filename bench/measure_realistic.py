@@ -65,7 +65,8 @@ def rows(device, quick):
         each = sorted(found.values(), key=lambda data: -data["first"][state])
         yield at_most(f"first image after loading, {state} cache [s]", each[0]["first"][state], required[device],
                       "the worst counts: " + ", ".join(f"{data['scene']} {data['first'][state]:.2f}" for data in each))
-    error = fast_error("--set", "realistic", "--only", ",".join(scenes), *(["--quick", "--samples", 8] if quick else []))
+    samples = os.environ.get("GLOAM_BENCH_SAMPLES", 8 if quick else "")
+    error = fast_error("--set", "realistic", "--only", ",".join(scenes), *(["--quick"] if quick else []), *(["--samples", samples] if samples else []))
     for key, name, required in (("FLIP mean", "mean LDR-FLIP against the path tier, worst scene", FLIP),
                                 ("radiance [%]", "mean radiance against the path tier, worst channel [%]", RADIANCE)):
         each = sorted(error["rows"], key=lambda row: -row[key])
