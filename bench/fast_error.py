@@ -52,8 +52,8 @@ SETS = {
     "realistic": Scenes("realistic_scenes", "from..to",
                         {"demo_room": (64, (4, 20)), "plain_room": (256, (4, 20)), "house": (48, (4, 20)), "house_2": (48, (4, 20)),
                          "bedroom": (48, (4, 20)), "office": (64, (4, 20)), "tunnel": (96, (4, 20)), "terrain": (64, (4, 20)),
-                         "warehouse": (48, (4, 20)), "rain": (32, (4, 20)), "adversity_house": (16, (4, 20)),
-                         "adversity_warehouse": (16, (4, 20))}, 1, True, {MEAN: 0.08, RADIANCE: 5}),
+                         "warehouse": (48, (4, 20)), "rain": (32, (4, 20)), "adversity_house": (48, (4, 20)),
+                         "adversity_warehouse": (32, (4, 20))}, 1, True, {MEAN: 0.08, RADIANCE: 5}),
 }
 
 
