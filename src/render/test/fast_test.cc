@@ -47,7 +47,7 @@ double block_ratio(const Film& film, const Film& exact, int bx, int by) {
 TEST(Fast, IndirectLightIsThatOfThePathTier) {
   const SceneBuilder b = divided_room();
   const Film exact = path_picture(b, room_view(), 256, kEndless);
-  constexpr uint64_t kSeeds = 4;
+  constexpr uint64_t kSeeds = 8;
   Film film = fast_picture(b, room_view(), 8, 0);
   for (uint64_t seed = 1; seed < kSeeds; ++seed) {
     const Film other = fast_picture(b, room_view(), 8, seed);
@@ -228,7 +228,7 @@ TEST(Fast, CellsLookForLightWhereTheGuideHasFoundIt) {
     constexpr uint64_t kPairs = 4;  // a ray in a thousand that finds the patch decides much
     double mean = 0;
     for (uint64_t seed = 0; seed < 2 * kPairs; seed += 2) {
-      const Film one = fast_picture(b, view, 1, seed), other = fast_picture(b, view, 1, seed + 1);
+      const Film one = fast_picture(b, view, 5, seed), other = fast_picture(b, view, 5, seed + 1);
       mean += (mean_luminance(one) + mean_luminance(other)) / (2 * kPairs);
       for (int by = 0; by < 6; ++by) {
         for (int bx = 0; bx < 8; ++bx)

@@ -359,7 +359,17 @@ uint64_t IrradianceCache::update(const SceneView& scene, const CpuTracer& tracer
     };
     std::stable_sort(asked_.begin(), asked_.end(),
                      [&](uint32_t a, uint32_t b) { return waits(a) > waits(b); });
-    if (!settles && i == 0 && asked_.size() > most_cells) asked_.resize(most_cells);
+    if (!settles && i == 0) {
+      // Cells whose light has come to rest are looked at less often.
+      const auto is_settled = [this](uint32_t row) {
+        return 2 * cells_[row].samples >= realtime::kMaxCellRays &&
+               cells_[row].stir < realtime::kStirred;
+      };
+      const auto settled =
+          static_cast<size_t>(std::count_if(asked_.begin(), asked_.end(), is_settled));
+      const size_t looked_at = asked_.size() - settled + std::min(settled, realtime::kSettledCells);
+      asked_.resize(std::min(looked_at, most_cells));
+    }
     rays += trace(scene, tracer, view(eye, edge_per_metre), seed, remembers, watch);
     watch->tile_done();
     // A lamp went on or off: what it sends comes round by one reflection each time.

@@ -30,13 +30,13 @@ uint8_t relative_weight(float weight, float brightest) {
 
 /// Adds the result of a ray to a list. Where the list is full, it takes the place of the lamp that
 /// brings least light, of hidden ones before others.
-void record(uint32_t lamp, uint8_t seen, float weight, float brightest, LampCell* cell) {
+void record(uint32_t lamp, uint8_t seen, float weight, LampCell* cell) {
   const uint16_t row = static_cast<uint16_t>(lamp);
   uint16_t* const end = cell->lamp + cell->count;
   auto at = static_cast<size_t>(std::lower_bound(cell->lamp, end, row) - cell->lamp);
   if (at < cell->count && cell->lamp[at] == row) {
     cell->seen[at] |= seen;
-    cell->weight[at] = std::max(cell->weight[at], relative_weight(weight, brightest));
+    cell->weight[at] = std::max(cell->weight[at], relative_weight(weight, cell->brightest));
     return;
   }
   if (cell->count == LampCell::kMost) {
@@ -46,7 +46,8 @@ void record(uint32_t lamp, uint8_t seen, float weight, float brightest, LampCell
     uint32_t least = 0;
     for (uint32_t i = 1; i < cell->count; ++i)
       if (worth(i) < worth(least)) least = i;
-    const int mine = relative_weight(weight, brightest) + ((seen & LampCell::kClear) ? 256 : 0);
+    const int mine =
+        relative_weight(weight, cell->brightest) + ((seen & LampCell::kClear) ? 256 : 0);
     if (worth(least) >= mine) return;
     const auto remove = [&](auto* list) {
       std::copy(list + least + 1, list + cell->count, list + least);
@@ -61,7 +62,7 @@ void record(uint32_t lamp, uint8_t seen, float weight, float brightest, LampCell
   };
   insert(cell->lamp, row);
   insert(cell->seen, seen);
-  insert(cell->weight, relative_weight(weight, brightest));
+  insert(cell->weight, relative_weight(weight, cell->brightest));
   ++cell->count;
 }
 
@@ -146,14 +147,14 @@ uint64_t LampCache::trace_cell(const SceneView& scene, const CpuTracer& fixed, u
     }
     std::stable_sort(order.begin(), order.end(),
                      [&](uint32_t a, uint32_t b) { return weights[a] > weights[b]; });
-    if (is_new && s == 0 && !order.empty()) cell.brightest = weights[order.front()];
+    if (is_new && s == 0 && !order.empty()) list.brightest = weights[order.front()];
     Sampler sampler = Sampler::make(seed ^ cell.key * 0x9E3779B97F4A7C15ull,
                                     cell.rounds + static_cast<uint32_t>(s), 0, 0, 0, 0);
     float seen = 0;
     for (const uint32_t i : order) {
       if (left < realtime::kNegligibleLamps * seen) break;
       const uint8_t result = look_at(scene, fixed, from, i, sampler.next_2d(), &rays);
-      record(i, result, weights[i], cell.brightest, &list);
+      record(i, result, weights[i], &list);
       if (result & LampCell::kClear) seen += weights[i];
       left -= weights[i];
     }

@@ -38,7 +38,6 @@ class LampCache {
     uint32_t last_asked = 0, last_traced = 0;  ///< update
     uint32_t rounds = 0;                       ///< of rays; 0: it is new
     int starts = 0;                            ///< places that asked since the last update
-    float brightest = 0;                       ///< light_weight() of weight 255
   };
 
   uint64_t trace_cell(const SceneView& scene, const CpuTracer& fixed, uint64_t seed, uint32_t row);

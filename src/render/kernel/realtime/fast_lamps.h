@@ -112,6 +112,17 @@ struct LampLightOf {
   Vec3Of<F> specular;  ///< [cd/m²]
 };
 
+/// Probability with which surfaces at p sample a lamp that moves, by its light from all around over
+/// the brightest of their lists.
+template <class F>
+GLOAM_HD F movable_probability(const SceneView& scene, const LampListsOf<F>& lists, uint32_t row,
+                               Vec3Of<F> p, MaskOf<F> active) {
+  const F weight = light_weight(scene, scene.lights[row], p, Vec3Of<F>{});
+  F brightest = 0.0f;
+  each_lane(active, [&](int i) { set_lane(&brightest, i, lists.of[i]->brightest); });
+  return min(weight / max(brightest * realtime::kSureLamp, F(1e-30f)), F(1.0f));
+}
+
 /// Sum over samples of lamps at vertices, before media on the way of their light.
 template <class F, class Tracer>
 class LampSum {
@@ -182,19 +193,22 @@ class LampSum {
   F total_ = 0.0f;  ///< illuminance of all samples [lx]
 };
 
-/// Adds the lamps that move to the sum: no list holds them.
+/// Adds the lamps that move to the sum: no list holds them. Lamps that are weak beside the lists'
+/// are sampled by chance.
 template <class F, class Tracer>
-GLOAM_HD void add_movable_lamps(const FastWorld<Tracer>& world, const SurfaceOf<F>& v,
-                                MaskOf<F> active, paths::State<F>* path, LampSum<F, Tracer>* sum) {
+GLOAM_HD void add_movable_lamps(const FastWorld<Tracer>& world, const LampListsOf<F>& lists,
+                                const SurfaceOf<F>& v, MaskOf<F> active, paths::State<F>* path,
+                                LampSum<F, Tracer>* sum) {
   for (uint32_t k = 0; k < world.lamps->movable.size; ++k) {
     const uint32_t row = world.lamps->movable[k];
-    const F weight = light_weight(world.scene, world.scene.lights[row], v.p, v.geometric);
-    const MaskOf<F> near = active & (weight > 0.0f);
-    if (!any(near)) continue;
+    const F probability = movable_probability(world.scene, lists, row, v.p, active);
+    const MaskOf<F> taken = active & (path->sampler.next_1d(active) < probability);
+    if (!any(taken)) continue;
     LampSampleOf<F> lamp;
-    lamp.light = sample_one_light(world.scene, row, v.p, path->sampler.next_2d(active),
-                                  path->ray.time, near);
-    sum->add(lamp, near);
+    lamp.light = sample_one_light(world.scene, row, v.p, path->sampler.next_2d(taken),
+                                  path->ray.time, taken);
+    lamp.light.pdf *= probability;
+    sum->add(lamp, taken);
   }
 }
 
@@ -233,7 +247,7 @@ GLOAM_HD void add_listed_lamps(const FastWorld<Tracer>& world, const LampListsOf
     });
     sum->add(lamp, many, clear);
   }
-  if (!world.lamps->movable.empty()) add_movable_lamps(world, v, active, path, sum);
+  if (!world.lamps->movable.empty()) add_movable_lamps(world, lists, v, active, path, sum);
 }
 
 /// Adds samples of all lights, chosen at the surface itself.
@@ -293,8 +307,12 @@ template <class F, class Tracer>
 GLOAM_HD float lamp_probability(const FastWorld<Tracer>& world, const LampListsOf<F>& lists,
                                 const paths::State<F>& path, uint32_t row, int i) {
   if (const LampCell* cell = lists.of[i]; cell != nullptr) {
-    for (uint32_t k = 0; k < world.lamps->movable.size; ++k)
-      if (world.lamps->movable[k] == row) return 1.0f;
+    for (uint32_t k = 0; k < world.lamps->movable.size; ++k) {
+      if (world.lamps->movable[k] != row) continue;
+      LampListsOf<float> one;
+      one.set(0, cell);
+      return movable_probability<float>(world.scene, one, row, lane(path.from, i), true);
+    }
     const float drawn = draw_probability(*cell, row);
     if (cell->visible <= realtime::kMaxLampsOfSurface) return drawn > 0 ? 1.0f : 0.0f;
     return static_cast<float>(realtime::kSampledLights) * drawn;

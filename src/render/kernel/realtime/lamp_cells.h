@@ -16,6 +16,7 @@ struct LampCell {
   uint16_t lamp[kMost];   ///< rows of SceneView::lights, rising
   uint8_t seen[kMost];    ///< by all rays so far
   uint8_t weight[kMost];  ///< light_weight() over the cell's largest [1/255], at least 1
+  float brightest = 0;    ///< light_weight() of weight 255
   uint8_t count = 0;
   uint8_t visible = 0;  ///< of these, how many a ray has reached
 

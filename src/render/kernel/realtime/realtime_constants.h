@@ -28,6 +28,9 @@ inline constexpr uint32_t kMaxLampsOfSurface = 8;
 /// Light of all lamps that are not looked at, over that of the lamps seen so far, below which a
 /// cell leaves them out; 0 to 1.
 inline constexpr float kNegligibleLamps = 0.01f;
+/// Light of a lamp that moves, over the brightest of a list, from which surfaces sample it surely;
+/// above 0.
+inline constexpr float kSureLamp = 0.1f;
 /// Growth of a lamp's strength since a cell was made up to which its list holds.
 inline constexpr float kMaxLampGrowth = 1.5f;
 /// Cells that are looked at once more in a picture, and pictures after which a cell that nothing
@@ -137,9 +140,13 @@ inline constexpr float kRayConeSpread = 0.15f;
 /// light that makes it worth it.
 inline constexpr double kMaxSeriesRatio = 0.97, kMinSeriesGain = 0.004;
 /// Pictures of the first instant, one upon the other: the first answer is not to be all noise.
-inline constexpr uint32_t kFirstPictures = 8;
+inline constexpr uint32_t kFirstPictures = 4;
 /// Cells that are traced again for one of these pictures, and for a later one: they bound its time.
 inline constexpr size_t kFirstCells = 5000, kMostCells = 2500;
+/// Cells that are traced again for a picture while the light rests, and fraction of a cell's
+/// directions with moving things from which its light does not.
+inline constexpr size_t kSettledCells = 1000;
+inline constexpr float kStirred = 0.01f;
 
 // Excess of single rays, spread over regions of cells.
 
