@@ -66,6 +66,15 @@ void record(uint32_t lamp, uint8_t seen, float weight, LampCell* cell) {
   ++cell->count;
 }
 
+/// Takes a lamp from a list.
+void hide(uint32_t lamp, LampCell* cell) {
+  for (uint32_t i = 0; i < cell->count; ++i) {
+    if (cell->lamp[i] != lamp || !cell->is_visible(i)) continue;
+    cell->seen[i] = LampCell::kHidden;
+    --cell->visible;
+  }
+}
+
 /// A ray from a place to a point of a lamp.
 uint8_t look_at(const SceneView& scene, const CpuTracer& fixed, const CacheRequest& from,
                 uint32_t lamp, Vec2f u, uint32_t* rays) {
@@ -92,16 +101,12 @@ void LampCache::follow(const SceneView& scene) {
     for (uint32_t i = 0; i < count; ++i) strengths_.push_back(scene.lights[i].strength);
     moves_.assign(count, false);
   }
-  bool found = false;
   for (uint32_t i = 0; i < count; ++i) {
     const LightView& now = scene.lights[i];
     if (moves_[i] || !(now.first_key >= 0 || (stays && has_moved(now, lights_[i])))) continue;
-    moves_[i] = found = true;
+    moves_[i] = true;
     movable_.push_back(static_cast<uint16_t>(i));
-  }
-  if (found) {  // lists hold them from before
-    cells_.clear(), lists_.clear(), starts_.clear();
-    index_.assign(cells_);
+    for (LampCell& list : lists_) hide(i, &list);
   }
   lights_.assign(scene.lights.data, scene.lights.data + count);
 }
