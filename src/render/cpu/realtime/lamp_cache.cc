@@ -135,7 +135,8 @@ uint64_t LampCache::trace_cell(const SceneView& scene, const CpuTracer& fixed, u
   LampCell& list = lists_[row];
   const uint32_t count = scene.lights.size;
   const bool is_new = cell.rounds == 0;
-  const int starts = std::min(cell.starts, is_new ? kStarts : 1);
+  const bool has_many = count > realtime::kMaxFastLights;
+  const int starts = std::min(cell.starts, is_new && !has_many ? kStarts : 1);
   std::vector<float> weights(count);
   std::vector<uint32_t> order;
   uint32_t rays = 0;
@@ -156,8 +157,12 @@ uint64_t LampCache::trace_cell(const SceneView& scene, const CpuTracer& fixed, u
     Sampler sampler = Sampler::make(seed ^ cell.key * 0x9E3779B97F4A7C15ull,
                                     cell.rounds + static_cast<uint32_t>(s), 0, 0, 0, 0);
     float seen = 0;
-    for (const uint32_t i : order) {
-      if (left < realtime::kNegligibleLamps * seen) break;
+    // Known cells look at a few of many lamps each time, and at others the next time.
+    const auto strides =
+        is_new ? 1 : static_cast<uint32_t>(order.size()) / realtime::kLampsLookedAt + 1;
+    for (size_t k = cell.rounds % strides; k < order.size(); k += strides) {
+      const uint32_t i = order[k];
+      if (strides == 1 && left < realtime::kNegligibleLamps * seen) break;
       const uint8_t result = look_at(scene, fixed, from, i, sampler.next_2d(), &rays);
       record(i, result, weights[i], &list);
       if (result & LampCell::kClear) seen += weights[i];

@@ -288,10 +288,15 @@ GLOAM_HD_LARGE LampLightOf<F> direct_light(const FastWorld<Tracer>& world,
   const SurfaceOf<F>& v = surface.v;
   const MaskOf<F> active = options.active, listed = active & options.lists.known;
   LampSum<F, Tracer> sum(world, surface, options, path);
-  const MaskOf<F> glows = options.every || scene.lights.size == 0 ? active : listed;
-  if (scene.has_glow() && any(glows)) {
+  if (scene.has_glow()) {
+    const MaskOf<F> always = active & MaskOf<F>(options.every || scene.lights.size == 0);
+    const F probability = select(always, F(1.0f), F(realtime::kGlowAmongLamps));
+    const MaskOf<F> glows =
+        always | (listed & (path->sampler.next_1d(listed) < realtime::kGlowAmongLamps));
     LampSampleOf<F> lamp;
+    lamp.light.pdf = 0.0f;
     sample_glow(scene, v.p, v.geometric, path->sampler.next_2d(glows), glows, &lamp);
+    lamp.light.pdf *= probability;
     sum.add(lamp, glows);
   }
   if (scene.lights.size == 0) return sum.finish();

@@ -24,7 +24,7 @@ inline constexpr float kGlowProbability = 0.5f, kGlowAmongLamps = 1.0f / kSample
 inline constexpr float kLampCellPixels = 10;
 /// Visible lamps of a cell up to which a surface takes a sample of each, otherwise kSampledLights
 /// in all; 1 to 40. Each costs an evaluation of the BSDF.
-inline constexpr uint32_t kMaxLampsOfSurface = 8;
+inline constexpr uint32_t kMaxLampsOfSurface = 4;
 /// Light of all lamps that are not looked at, over that of the lamps seen so far, below which a
 /// cell leaves them out; 0 to 1.
 inline constexpr float kNegligibleLamps = 0.01f;
@@ -33,6 +33,8 @@ inline constexpr float kNegligibleLamps = 0.01f;
 inline constexpr float kSureLamp = 0.1f;
 /// Growth of a lamp's strength since a cell was made up to which its list holds.
 inline constexpr float kMaxLampGrowth = 1.5f;
+/// Lamps that a known cell looks at in a picture, at least.
+inline constexpr uint32_t kLampsLookedAt = 4;
 /// Cells that are looked at once more in a picture, and pictures after which a cell that nothing
 /// asks for is dropped.
 inline constexpr size_t kOldLampCells = 2000;
