@@ -50,7 +50,7 @@ std::string mean_of(const Radiance& radiance) {
   return fmt::format("{:.6g} {:.6g} {:.6g}", sum[0] / n, sum[1] / n, sum[2] / n);
 }
 
-/// What takes pictures of the scene's instant.
+/// Takes pictures of the scene at one instant.
 struct Studio {
   const MovingScene& scene;
   CameraRequest request;  ///< of the path tier

@@ -116,7 +116,7 @@ class BenchCamera {
 
   std::string name_;
   Pose from_, to_;
-  double length_ = 0;  // [m]; 0 = it is no way
+  double length_ = 0;  // [m]; 0: one camera of the scene
 };
 
 }  // namespace gloam

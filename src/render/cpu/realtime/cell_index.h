@@ -66,4 +66,21 @@ class CellIndex {
   uint32_t count_ = 0;
 };
 
+/// Removes the cells that nothing has asked for in the last `lifetime` updates, and their rows in
+/// the other lists. Returns the number of removed cells.
+template <class Cells, class... Lists>
+size_t drop_old_cells(uint32_t update, uint32_t lifetime, Cells* cells, Lists*... lists) {
+  size_t kept = 0;
+  for (size_t row = 0; row < cells->size(); ++row) {
+    if ((*cells)[row].last_asked + lifetime < update) continue;
+    (*cells)[kept] = (*cells)[row];
+    (((*lists)[kept] = (*lists)[row]), ...);
+    ++kept;
+  }
+  const size_t dropped = cells->size() - kept;
+  cells->resize(kept);
+  (lists->resize(kept), ...);
+  return dropped;
+}
+
 }  // namespace gloam

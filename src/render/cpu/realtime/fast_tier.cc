@@ -107,6 +107,7 @@ void FastHistory::compose() {
 void FastHistory::add_picture(const Job& job, uint32_t pass, RenderWatch* watch) {
   const Vec3f eye = job.camera.pose.X_WC_open.p;
   const uint64_t seed = job.settings.seed;
+  const CpuTracer movers = job.tracer.moving_part();
   for (bool again = true; again && !watch->stopped();) {
     const bool first = cache_.size() == 0;
     const float edge = cell_edge(job.camera) * coarse_;
@@ -114,7 +115,7 @@ void FastHistory::add_picture(const Job& job, uint32_t pass, RenderWatch* watch)
     cache.lamps_move = lamps_move_;
     std::optional<LampCellsView> lamps;
     if (has_lamp_lists(job)) lamps = lamp_cells_.view(eye, lamp_cell_edge(job.camera));
-    trace({job.scene, job.tracer, job.camera, cache, lamps, seed}, pass, job.slices);
+    trace({job.scene, job.tracer, movers, job.camera, cache, lamps, seed}, pass, job.slices);
     if (lamps) {
       lamp_cells_.ask(lamp_requests_);
       rays_ += lamp_cells_.update(job.scene, job.tracer, seed, realtime::kOldLampCells, watch);

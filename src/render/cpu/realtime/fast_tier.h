@@ -15,6 +15,7 @@ namespace gloam {
 struct FastView {
   const SceneView& scene;
   const CpuTracer& tracer;
+  const CpuTracer& movers;  ///< of only the instances that may move
   const CameraView32& camera;
   IrradianceCacheView cache;
   std::optional<LampCellsView> lamps;

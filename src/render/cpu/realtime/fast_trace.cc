@@ -148,16 +148,6 @@ void spread_air(int x0, int y0, FastFrame* frame) {
   });
 }
 
-/// The tracer of what may move alone.
-CpuTracer moving_part(const CpuTracer& tracer) {
-  CpuTracer moving = tracer;
-  moving.fixed = {};
-  moving.scanned.solids = {};
-  moving.scanned.groups = {};
-  moving.clip = nullptr;
-  return moving;
-}
-
 /// Reflections that one block's pixels wait for.
 struct PendingBlock {
   int x = 0, y = 0;
@@ -222,8 +212,7 @@ uint64_t FastHistory::trace_tile(const FastView& view, uint32_t pass, int x0, in
                                  AskedOfTile* asked) {
   const FlushDenormals flush;
   FastWorld<CpuTracer> world{view.scene, view.tracer, view.cache};
-  const CpuTracer movers = moving_part(view.tracer);
-  if (view.lamps) world.lamps = &*view.lamps, world.movers = &movers;
+  if (view.lamps) world.lamps = &*view.lamps, world.movers = &view.movers;
   TileRequests seen(&asked->seen), mirrored(&asked->mirrored), lamps(&asked->lamps);
   ReflectedRays reflected(world, pictures_, &mirrored);
   PendingBlock blocks[kTile * kTile / kLaneCount];
@@ -281,10 +270,10 @@ void FastHistory::trace(const FastView& view, uint32_t pass, RenderSlices* slice
     const auto [row, column] = std::div(tile, int64_t{columns});
     SceneView plain = view.scene;  // rays of pixels go where they must
     plain.guide.probability = 0;
-    traced[static_cast<size_t>(tile)] =
-        trace_tile({plain, view.tracer, view.camera, view.cache, view.lamps, view.seed}, pass,
-                   static_cast<int>(column) * kTile, static_cast<int>(row) * kTile,
-                   &asked_[static_cast<size_t>(tile)]);
+    traced[static_cast<size_t>(tile)] = trace_tile(
+        {plain, view.tracer, view.movers, view.camera, view.cache, view.lamps, view.seed}, pass,
+        static_cast<int>(column) * kTile, static_cast<int>(row) * kTile,
+        &asked_[static_cast<size_t>(tile)]);
   });
   requests_.clear();
   lamp_requests_.clear();

@@ -394,20 +394,9 @@ uint64_t IrradianceCache::update(const SceneView& scene, const CpuTracer& tracer
 void IrradianceCache::forget() {
   ++update_;
   excess_.end_update(realtime::kCellLifetime);
-  size_t kept = 0;
-  for (size_t row = 0; row < cells_.size(); ++row) {
-    cells_[row].starts = 0;
-    if (cells_[row].last_asked + realtime::kCellLifetime < update_) continue;
-    cells_[kept] = cells_[row];
-    light_[kept] = light_[row];
-    homes_[kept] = homes_[row];
-    ++kept;
-  }
-  if (kept == cells_.size()) return;
-  cells_.resize(kept);
-  light_.resize(kept);
-  homes_.resize(kept);
-  starts_.resize(kept * kStarts);
+  for (Cell& cell : cells_) cell.starts = 0;
+  if (drop_old_cells(update_, realtime::kCellLifetime, &cells_, &light_, &homes_) == 0) return;
+  starts_.resize(cells_.size() * kStarts);
   index_.assign(cells_);
 }
 

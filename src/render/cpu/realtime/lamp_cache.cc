@@ -9,14 +9,6 @@
 namespace gloam {
 namespace {
 
-/// The tracer without what may move.
-CpuTracer fixed_part(const CpuTracer& tracer) {
-  CpuTracer fixed = tracer;
-  fixed.moving = {};
-  fixed.clip = nullptr;
-  return fixed;
-}
-
 bool has_moved(const LightView& now, const LightView& before) {
   return now.first_key >= 0 || now.kind != before.kind || now.instance != before.instance ||
          length_squared(now.p - before.p) > 0 ||
@@ -123,7 +115,7 @@ void LampCache::ask(const std::vector<CacheRequest>& requests) {
     Cell& cell = cells_[row];
     cell.last_asked = update_;
     const auto count = static_cast<uint32_t>(cell.starts++);
-    // Of more places, other ones from update to update.
+    // If more places ask, each update keeps different ones.
     const uint32_t place = count < kStarts ? count : mix_bits(count ^ update_ << 16) % (count + 1);
     if (place < kStarts) starts_[row * kStarts + place] = request;
   }
@@ -191,7 +183,7 @@ uint64_t LampCache::update(const SceneView& scene, const CpuTracer& tracer, uint
   std::stable_sort(asked.begin(), asked.end(),
                    [&](uint32_t a, uint32_t b) { return waits(a) > waits(b); });
   asked.resize(std::min(asked.size(), made + most_old));
-  const CpuTracer fixed = fixed_part(tracer);
+  const CpuTracer fixed = tracer.fixed_part();
   std::vector<uint64_t> rays(asked.size());
   constexpr size_t kTask = 32;  // cells
   watch->slices().run("lamp cells", static_cast<int64_t>((asked.size() + kTask - 1) / kTask),
@@ -207,18 +199,9 @@ uint64_t LampCache::update(const SceneView& scene, const CpuTracer& tracer, uint
 
 void LampCache::forget_old() {
   ++update_;
-  size_t kept = 0;
-  for (size_t row = 0; row < cells_.size(); ++row) {
-    cells_[row].starts = 0;
-    if (cells_[row].last_asked + realtime::kLampCellLifetime < update_) continue;
-    cells_[kept] = cells_[row];
-    lists_[kept] = lists_[row];
-    ++kept;
-  }
-  if (kept == cells_.size()) return;
-  cells_.resize(kept);
-  lists_.resize(kept);
-  starts_.resize(kept * kStarts);
+  for (Cell& cell : cells_) cell.starts = 0;
+  if (drop_old_cells(update_, realtime::kLampCellLifetime, &cells_, &lists_) == 0) return;
+  starts_.resize(cells_.size() * kStarts);
   index_.assign(cells_);
 }
 

@@ -35,6 +35,11 @@ class CpuTracer {
   void trace_packet(const Ray* const* rays, int count, bool any, bool coherent, RayHit* hits,
                     bool* found) const;
 
+  /// Tracers of only the instances that never move, and of only the others; without a clip. Not for
+  /// a tracer of our own BVH.
+  CpuTracer fixed_part() const;
+  CpuTracer moving_part() const;
+
   // Two scenes, one after the other: an instance around all that is static
   // would cost every ray more.
   EmbreePart fixed, moving;

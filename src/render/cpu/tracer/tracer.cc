@@ -5,6 +5,21 @@
 
 namespace gloam {
 
+CpuTracer CpuTracer::fixed_part() const {
+  CpuTracer part = *this;
+  part.moving = {};
+  part.clip = nullptr;
+  return part;
+}
+CpuTracer CpuTracer::moving_part() const {
+  CpuTracer part = *this;
+  part.fixed = {};
+  part.scanned.solids = {};
+  part.scanned.groups = {};
+  part.clip = nullptr;
+  return part;
+}
+
 bool CpuTracer::trace(const Ray& ray, bool any, RayHit* hit) const {
   return own ? own->trace(ray, any, hit) : by_embree(ray, any, hit);
 }

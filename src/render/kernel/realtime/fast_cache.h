@@ -22,7 +22,7 @@ struct FastWorld {
   const Tracer& tracer;
   const IrradianceCacheView& cache;
   const LampCellsView* lamps = nullptr;  ///< null: lamps are searched for at each surface
-  const Tracer* movers = nullptr;        ///< with `lamps`: of what may move alone
+  const Tracer* movers = nullptr;        ///< with `lamps`: of only the instances that may move
 };
 
 namespace fasts {

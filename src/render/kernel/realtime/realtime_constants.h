@@ -25,8 +25,8 @@ inline constexpr float kLampCellPixels = 10;
 /// Visible lamps of a cell up to which a surface takes a sample of each, otherwise kSampledLights
 /// in all; 1 to 40. Each costs an evaluation of the BSDF.
 inline constexpr uint32_t kMaxLampsOfSurface = 4;
-/// Light of all lamps that are not looked at, over that of the lamps seen so far, below which a
-/// cell leaves them out; 0 to 1.
+/// A cell leaves the remaining lamps out when their light is less than this fraction of the light
+/// of the lamps seen so far; 0 to 1.
 inline constexpr float kNegligibleLamps = 0.01f;
 /// Light of a lamp that moves, over the brightest of a list, from which surfaces sample it surely;
 /// above 0.
