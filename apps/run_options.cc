@@ -72,10 +72,11 @@ void RenderFlags::add_to(CLI::App& command) {
                   "with media")
       ->check(CLI::Range(1, 64));
   command
-      .add_option("--tier", tier,
-                  "Rendering tier. path: unbiased light; fast: interactive, filtered; direct: one "
-                  "ambient light")
-      ->check(CLI::IsMember({"path", "fast", "direct"}));
+      .add_option(
+          "--tier", tier,
+          "Rendering tier. path: unbiased light; interactive: real time, filtered; direct: one "
+          "ambient light")
+      ->check(CLI::IsMember({"path", "interactive", "direct"}));
   command
       .add_option("--device", device,
                   "Rendering device; auto: an NVIDIA GPU if available, otherwise the CPU")

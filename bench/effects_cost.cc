@@ -1,6 +1,6 @@
-// What effects cost: CPU time of the thread that steps, and pictures of the fast tier, of a scene
-// with its gases, fires, smokes, rotors, dust, weather, waters and soils against the same scene
-// without any. People stay in both: they are no effect, and have a bar of their own.
+// What effects cost: CPU time of the thread that steps, and pictures of the interactive tier, of a
+// scene with its gases, fires, smokes, rotors, dust, weather, waters and soils against the same
+// scene without any. People stay in both: they are no effect, and have a bar of their own.
 //
 //   effects_cost SCENE CAMERA [--at S] [--blocks N] [--pictures N] [--size WxH] [--each] [--json]
 //
@@ -47,7 +47,7 @@ Scene with_only(Scene scene, Kept kept) {
   return scene;
 }
 
-constexpr int kWarmUp = 4;  ///< pictures until the fast tier's caches are full
+constexpr int kWarmUp = 4;  ///< pictures until the interactive tier's caches are full
 
 double seconds() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
@@ -96,7 +96,7 @@ struct Filming {
     request.width = options.width, request.height = options.height;
     request.outputs = {"rgb"};
     request.render = scene.render;
-    request.render.tier = "fast";
+    request.render.tier = "interactive";
     GLOAM_TRY(out.sensor, CameraSensor::create(shared->description, request, 1));
     return out;
   }
@@ -170,7 +170,8 @@ Status run(const Options& options) {
             "\"bare_us\": {:.2f}, \"picture_ratio\": {:.3f}, \"picture_ms\": {:.1f}, "
             "\"clear_ms\": {:.1f}, \"real_time\": {:.2f}, \"each_us\": {{{}}}}}\n"
           : "stepping: {:.3f} times the CPU time without effects ({:.2f} us a step, {:.2f} "
-            "without); pictures of the fast tier: {:.3f} times the time ({:.1f} ms, {:.1f} ms "
+            "without); pictures of the interactive tier: {:.3f} times the time ({:.1f} ms, {:.1f} "
+            "ms "
             "without); {:.2f} times real time in all; one kind alone, us a step: {}\n";
   fmt::print(fmt::runtime(text), median(step_ratios), 1e6 * median(steps[0]) / per_block,
              1e6 * median(steps[1]) / per_block, median(picture_ratios), 1e3 * median(pictures[0]),

@@ -1,6 +1,6 @@
 // Light of a scene by few samples: mean radiance of pictures of the path tier, denoised,
-// and of the fast tier, against that of many samples, which are not denoised; and how much the
-// pictures of an instant differ from one another.
+// and of the interactive tier, against that of many samples, which are not denoised; and how much
+// the pictures of an instant differ from one another.
 //
 //   few_samples SCENE… [--time S] [--size WxH] [--spp N] [--seeds N] [--pictures FOLDER] [--json]
 
@@ -185,14 +185,14 @@ Result<Found> measure(const Options& options, const Studio& studio, const std::s
     }
     found.kept[key] = Estimate::of(kept);
   }
-  std::vector<Color> fast;
+  std::vector<Color> interactive;
   for (int i = 0; i < options.seeds; ++i) {
-    GLOAM_TRY(const auto frames,
-              studio.take(studio.render(1, true, "fast"), static_cast<uint64_t>(1 + i), kFrames));
-    fast.push_back(mean_of(frames.back()));
+    GLOAM_TRY(const auto frames, studio.take(studio.render(1, true, "interactive"),
+                                             static_cast<uint64_t>(1 + i), kFrames));
+    interactive.push_back(mean_of(frames.back()));
     if (i == 0) GLOAM_TRY_STATUS(save(options, studio, name + "_fast", frames.back()));
   }
-  found.few["fast"] = Estimate::of(fast).over(found.many);
+  found.few["interactive"] = Estimate::of(interactive).over(found.many);
   GLOAM_TRY(const auto still, studio.take(studio.render(16, true), 1, kFrames));
   found.deviation = deviation(studio, still);
   return found;

@@ -1,6 +1,6 @@
 """Seconds from a client's first byte to the first picture of the live page, 320x240: bench/first_live_picture.py [SCENE] [TIER ...]
 
-Asked is 3 s on an idle machine. Example: python3 bench/first_live_picture.py examples/house.toml fast path
+Asked is 3 s on an idle machine. Example: python3 bench/first_live_picture.py examples/house.toml interactive path
 """
 import base64
 import os
@@ -43,5 +43,5 @@ def first_picture(scene, tier):
 
 if __name__ == "__main__":
     scene_file = sys.argv[1] if len(sys.argv) > 1 else ROOT / "examples" / "house.toml"
-    for each in sys.argv[2:] or ["fast", "path"]:
+    for each in sys.argv[2:] or ["interactive", "path"]:
         print(f"{Path(scene_file).name}, {each} tier: first picture after {first_picture(scene_file, each):.2f} s")

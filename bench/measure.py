@@ -310,31 +310,31 @@ def adaptive_sampling(quick):
                    f"each: {each}; 0.05 asked for, reached {', '.join(format(s['reached'], '.3f') for s in scenes)}")
 
 
-def fast_error(*options):
-    """The object that bench/fast_error.py prints; its exit status also depends on the bars."""
-    result = subprocess.run([peer_python(), ROOT / "bench" / "fast_error.py", "--json", *map(str, options)], capture_output=True, text=True)
+def interactive_error(*options):
+    """The object that bench/interactive_error.py prints; its exit status also depends on the bars."""
+    result = subprocess.run([peer_python(), ROOT / "bench" / "interactive_error.py", "--json", *map(str, options)], capture_output=True, text=True)
     lines = result.stdout.splitlines()
     if not lines:
-        raise RuntimeError((result.stderr.strip().splitlines() or [f"fast_error.py: exit status {result.returncode}"])[-1])
+        raise RuntimeError((result.stderr.strip().splitlines() or [f"interactive_error.py: exit status {result.returncode}"])[-1])
     return json.loads(lines[-1])
 
 
-def fast_tier(quick):
+def interactive_tier(quick):
     """a picture of 640 x 480 of a furnished room with a moving robot of 418,000 triangles against a bare Embree loop that traces its primary
     and one shadow ray; how far five moving scenes are from the path tier"""
-    data = run_json(BIN / "bench_path_rate", "--fast", "--meshes", "--json", "--runs", 7 if quick else 25)
-    yield at_most("fast tier 640 x 480: CPU time / bare primary and shadow loop", data["cpu_over_bare"], 2.75,
+    data = run_json(BIN / "bench_path_rate", "--interactive", "--meshes", "--json", "--runs", 7 if quick else 25)
+    yield at_most("interactive tier 640 x 480: CPU time / bare primary and shadow loop", data["cpu_over_bare"], 2.75,
                   f"medians of turns in one process, all threads: {data['cpu_ms']:.0f} ms CPU, {data['wall_ms']:.0f} ms wall; the bare loop "
                   f"{data['cpu_ms'] / data['cpu_over_bare']:.0f} ms CPU")
-    error = fast_error(*(["--quick"] if quick else []))
+    error = interactive_error(*(["--quick"] if quick else []))
     each = "; ".join(f"{row['scene']} picture {row['picture']}: {row['FLIP mean']:.4f}, 95 % {row['FLIP 95 %']:.4f} (halves of the reference "
                      f"{row['halves']:.4f})" for row in error["rows"])
-    yield at_most("fast tier: mean LDR-FLIP against the path tier, worst scene", error["worst"]["FLIP mean"], 0.08, each)
-    yield at_most("fast tier: 95th percentile of LDR-FLIP, worst scene", error["worst"]["FLIP 95 %"], 0.25, "of the same pictures")
+    yield at_most("interactive tier: mean LDR-FLIP against the path tier, worst scene", error["worst"]["FLIP mean"], 0.08, each)
+    yield at_most("interactive tier: 95th percentile of LDR-FLIP, worst scene", error["worst"]["FLIP 95 %"], 0.25, "of the same pictures")
 
 
 def truth_at_few_samples(quick):
-    """mean light of denoised pictures of few samples, and of the fast tier, against many samples in the examples"""
+    """mean light of denoised pictures of few samples, and of the interactive tier, against many samples in the examples"""
     names = os.environ.get("GLOAM_BENCH_SCENES", "house,office" if quick else "")
     every = sorted(p for p in (ROOT / "examples").glob("*.toml") if "[[camera]]" in p.read_text())
     scenes = [p for p in every if not names or p.stem in names.split(",")]
@@ -351,7 +351,7 @@ def truth_at_few_samples(quick):
         own = f", {min(data[key]['kept'], key=lambda k: -abs(k - 1)):.3f} of its samples'" if "kept" in data[key] else ""
         return f"{data['scene']} {ratios} ± {max(data[key]['error']):.3f}{own}"
 
-    for key, bar in (("path 4", 0.05), ("path 16", 0.05), ("fast", 0.2)):
+    for key, bar in (("path 4", 0.05), ("path 16", 0.05), ("interactive", 0.2)):
         worst = sorted(found, key=lambda data: -off(data, key))
         yield at_most(f"{key}: mean light against many samples, worst channel and scene", off(worst[0], key), bar,
                       "; ".join(note(data, key) for data in worst))
@@ -451,7 +451,7 @@ def effects(quick):
                     "--blocks", 6 if quick else 20, "--pictures", 3 if quick else 8)
     yield at_most("CPU time of the stepping thread with a fire / without", data["step_ratio"], 1.1, f"medians; {data['step_us']:.0f} µs a step")
     yield at_least("house fire: simulated time / real time, gas at 10 Hz", data["real_time"], 1, "on 2 cores, without pictures")
-    yield at_most("fast tier 640 x 480 with a room full of smoke / without", data["picture_ratio"], 2,
+    yield at_most("interactive tier 640 x 480 with a room full of smoke / without", data["picture_ratio"], 2,
                   f"wall, medians: {data['picture_ms']:.0f} ms, {data['clear_ms']:.0f} ms without")
 
 
@@ -550,6 +550,6 @@ def flight(quick):
 
 
 # With the seconds that each takes on two cores: the first estimate of the time left.
-ALL = {sim_step_rate: 15, sim_beside_cameras: 60, path_tier: 60, equal_error: 600, direct_tier: 90, direct_places: 60, view: 40, fast_tier: 400, truth: 40, load_time: 120, import_time: 60,
+ALL = {sim_step_rate: 15, sim_beside_cameras: 60, path_tier: 60, equal_error: 600, direct_tier: 90, direct_places: 60, view: 40, interactive_tier: 400, truth: 40, load_time: 120, import_time: 60,
        first_picture: 15, adaptive_sampling: 120, truth_at_few_samples: 900, lidar: 25, environments: 60, hfield: 25, policy: 3, gas: 20,
        effects: 90, all_effects: 75, log_rate: 60, record_cost: 300, latency: 330, python: 60, inverse_kinematics: 30, flight: 20}

@@ -3,11 +3,11 @@ import os
 import tempfile
 from pathlib import Path
 
-from measure import BIN, CACHE, ROOT, at_least, at_most, fast_error, milliseconds, peer_python, run, run_json, say
+from measure import BIN, CACHE, ROOT, at_least, at_most, interactive_error, milliseconds, peer_python, run, run_json, say
 
 SCENES = ROOT / "bench" / "realistic_scenes"
 PICTURES = CACHE / "bench_pictures" / "realistic"
-TIER = "fast"
+TIER = "interactive"
 # Milliseconds that an image of 640x480 may take on two CPU cores and on a card, in each scene of a row.
 IMAGES = {"demo room, house, office, tunnel": (("demo_room", "house", "office", "tunnel"), {"cpu": 250, "cuda": 8}),
           "warehouse with people, terrain": (("warehouse", "terrain"), {"cpu": 350, "cuda": 10}),
@@ -66,7 +66,7 @@ def rows(device, quick):
         yield at_most(f"first image after loading, {state} cache [s]", each[0]["first"][state], required[device],
                       "the worst counts: " + ", ".join(f"{data['scene']} {data['first'][state]:.2f}" for data in each))
     samples = os.environ.get("GLOAM_BENCH_SAMPLES", 8 if quick else "")
-    error = fast_error("--set", "realistic", "--only", ",".join(scenes), *(["--quick"] if quick else []), *(["--samples", samples] if samples else []))
+    error = interactive_error("--set", "realistic", "--only", ",".join(scenes), *(["--quick"] if quick else []), *(["--samples", samples] if samples else []))
     for key, name, required in (("FLIP mean", "mean LDR-FLIP against the path tier, worst scene", FLIP),
                                 ("radiance [%]", "mean radiance against the path tier, worst channel [%]", RADIANCE)):
         each = sorted(error["rows"], key=lambda row: -row[key])

@@ -33,7 +33,7 @@ Arguments parse(int argc, char** argv) {
   Arguments a;
   CommandLine line(argc, argv);
   if (line.flag("--direct")) a.settings.tier = RenderTier::kDirect;
-  if (line.flag("--fast")) a.settings.tier = RenderTier::kFast;
+  if (line.flag("--interactive")) a.settings.tier = RenderTier::kInteractive;
   a.room.plain = line.flag("--plain");
   a.room.meshes = line.flag("--meshes");
   a.json = line.flag("--json");
@@ -101,7 +101,7 @@ struct RecordingTracer {
 };
 
 /// The rays of one sample per pixel of the path tier, in its own order, one list per row; for the
-/// fast tier, the primary and one shadow ray.
+/// interactive tier, the primary and one shadow ray.
 std::vector<std::vector<RecordedRay>> record_rays(const Probe& probe, const CameraView& view,
                                                   const RenderSettings& settings) {
   CameraView32 camera;
@@ -122,7 +122,7 @@ std::vector<std::vector<RecordedRay>> record_rays(const Probe& probe, const Came
       if (settings.tier != RenderTier::kPath) {
         DirectState state;
         direct_start(&state, ray, cone, sampler);
-        const int most = settings.tier == RenderTier::kFast ? 2 : 1 << 20;
+        const int most = settings.tier == RenderTier::kInteractive ? 2 : 1 << 20;
         bool going = true;
         for (int i = 0; going && i < most; ++i) {
           RayHit hit;
@@ -271,7 +271,7 @@ int main(int argc, char** argv) {
   RenderStats stats;
   for (int i = 0; i < a.runs; ++i) {
     double cpu = cpu_seconds(), wall = wall_seconds();
-    if (a.settings.tier == RenderTier::kFast) {  // the robot walks
+    if (a.settings.tier == RenderTier::kInteractive) {  // the robot walks
       std::swap(before, now);
       now = builder.frame;
       for (size_t body = 1; 3 * body < now.body_p.size(); ++body) now.body_p[3 * body] += 0.02 * i;

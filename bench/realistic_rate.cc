@@ -1,6 +1,6 @@
 // Time of an image of a realistic scene: a camera moves through it while physics runs.
 //
-//   realistic_rate SCENE --tier fast|path|direct [--camera FROM..TO] [--size WxH]
+//   realistic_rate SCENE --tier interactive|path|direct [--camera FROM..TO] [--size WxH]
 //                  [--device cpu|cuda] [--frames N] [--spp N] [--out FOLDER] [--json]
 //
 // Physics steps between the images, 20 of them per second of simulation time, and is timed apart:
@@ -169,7 +169,7 @@ int main(int argc, char** argv) {
       !options.device.empty() && options.device != "cpu" && options.device != "cuda";
   if (help || line.words().size() != 1 || options.tier.empty() || no_device) {
     fmt::print(help ? stdout : stderr,
-               "usage: realistic_rate SCENE --tier fast|path|direct [--camera FROM..TO] "
+               "usage: realistic_rate SCENE --tier interactive|path|direct [--camera FROM..TO] "
                "[--size WxH] [--device cpu|cuda] [--frames N] [--spp N] [--out FOLDER] [--json]\n");
     return help ? 0 : 2;
   }

@@ -37,9 +37,9 @@ SLOW = [
 FULL = [
     "Adaptive.HasTheMeanOfEvenSampling",
     "Fast.CellsLookForLightWhereTheGuideHasFoundIt",
-    "FastMedia.FlamesLightTheRoomAsInThePathTier",
-    "FastMedia.SmokeIsLitAsByThePathTier",
-    "FastMedia.WallsKeepTheLightOfFogOutside",
+    "InteractiveMedia.FlamesLightTheRoomAsInThePathTier",
+    "InteractiveMedia.SmokeIsLitAsByThePathTier",
+    "InteractiveMedia.WallsKeepTheLightOfFogOutside",
     "GeneratedPlaces.LeaveTheWayFreeThatIsAskedFor",
     "GeneratedPlaces.MakeHallwaysOfAsManyTurnsAsAskedForAndOfTheirLength",
     "GeneratedPlaces.MakeHousesAtTheExtremesOfTheirParameters",

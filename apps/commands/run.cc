@@ -126,11 +126,10 @@ int run(const RunCommand& command_line, const Globals& globals) {
   if (const Status status = check_outputs(command.options.outputs); !status.ok())
     return fail(status.error());
   scene->record.mcap |= command.mcap;
-  // Live pictures are quick ones unless the user asked for light on the command line.
+  // Live images are in real time unless the command line asks for another tier.
   if (command.is_live(scene->bridge) && command.options.tier.empty()) {
-    scene->render.tier = "direct";
-    scene->render.spp = 1;
-    scene->render.denoise = false;
+    scene->render.tier = "interactive";
+    scene->render.error.reset();
   }
   auto world = compile(*scene, globals, command.options.keyframe);
   if (!world.ok()) return fail(world.error());

@@ -23,7 +23,8 @@ namespace gloam {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr std::array kFormats = {kModelCache, kVisualCache, kBvhCache, kHullCache, kSceneCache};
+constexpr std::array kFormats = {kModelCache, kVisualCache, kBvhCache,
+                                 kLightCache, kHullCache,   kSceneCache};
 constexpr size_t kHeadSize = 2 * sizeof(uint64_t);  // the format's number, the hash of the rest
 constexpr size_t kHashedPiece = size_t{16} << 20;
 constexpr uint64_t kDefaultSizeLimit = uint64_t{10} << 30;

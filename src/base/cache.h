@@ -29,6 +29,8 @@ inline constexpr CacheFormat kModelCache{"models", ".world",
 inline constexpr CacheFormat kVisualCache{"visuals", ".model", "model files of [[visual]]s"};
 inline constexpr CacheFormat kBvhCache{"bvhs", ".bvh",
                                        "ray-tracing trees of large meshes, for GPUs"};
+inline constexpr CacheFormat kLightCache{"light", ".light",
+                                         "light of the interactive tier's first images"};
 inline constexpr CacheFormat kHullCache{"hulls", ".hulls", "convex parts of meshes"};
 inline constexpr CacheFormat kSceneCache{"scenes", ".scene", "folders of logged scenes"};
 

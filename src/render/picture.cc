@@ -55,7 +55,7 @@ void resize_film(const CameraView& view, const RenderSettings& settings, Film* f
   film->height = view.intrinsics.height;
   const size_t n = film->pixel_count(), exact = settings.exact_channels ? n : 0;
   const size_t details = settings.exact_details ? exact : 0;
-  const size_t light = settings.spp > 0 || settings.tier == RenderTier::kFast ? n : 0;
+  const size_t light = settings.spp > 0 || settings.tier == RenderTier::kInteractive ? n : 0;
   film->radiance.resize(light);
   film->albedo.resize(light);
   film->normal.resize(light);

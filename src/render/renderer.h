@@ -37,13 +37,14 @@ struct CameraView {
 };
 
 enum class RenderTier : uint8_t {
-  kPath,    ///< unbiased path tracing
-  kDirect,  ///< primary hit, direct light with shadows, one ambient light by facing
-  kFast,    ///< direct light, cached indirect light, one specular bounce; filtered over pictures
+  kPath,         ///< unbiased path tracing
+  kDirect,       ///< primary hit, direct light with shadows, one ambient light by facing
+  kInteractive,  ///< direct light, cached indirect light, one specular bounce; filtered over
+                 ///< pictures
 };
 
-/// Memory of one camera's earlier pictures, for the fast tier. A picture is a function of the
-/// scene, the seed and the pictures since the history was made.
+/// Memory of one camera's earlier pictures, for the interactive tier. A picture is a function of
+/// the scene, the seed and the pictures since the history was made.
 class ViewHistory {
  public:
   virtual ~ViewHistory() = default;
@@ -64,7 +65,7 @@ struct RenderSettings {
   /// For a denoiser, of pictures with fewer samples than this: albedo and normal of so many rays at
   /// edges, of the pixel's centre elsewhere. 0 = always those of the samples. Needs exact_details.
   int guide_samples = 0;
-  ViewHistory* history = nullptr;  ///< fast tier: of this camera; null = a picture by itself
+  ViewHistory* history = nullptr;  ///< interactive tier: of this camera; null = a picture by itself
   /// Path tier: sampling goes on until the standard error of a pixel's mean is this share of its
   /// value (render/cpu/path/adaptive_tile.h), 0 … 1; 0 = `spp` samples in every pixel. Then
   /// first_sample is 0 and spp at least kLeastAdaptiveSpp.

@@ -10,12 +10,12 @@
 #include "render/cpu/guide/distant_light.h"
 #include "render/cpu/guide/illuminance.h"
 #include "render/cpu/guide/light_guide.h"
+#include "render/cpu/interactive/interactive_tier.h"
 #include "render/cpu/lidar_scan.h"
 #include "render/cpu/particles/particle_streaks.h"
 #include "render/cpu/path/ambient.h"
 #include "render/cpu/path/edge_samples.h"
 #include "render/cpu/path/object_cover.h"
-#include "render/cpu/realtime/fast_tier.h"
 #include "render/cpu/tracer/traced_scene.h"
 #include "render/cuda/cuda_stages.h"
 #include "render/picture.h"
@@ -70,7 +70,8 @@ class StagedRenderer final : public Renderer {
       film->cover = measure_cover(job.scene, job.tracer, job.camera, job.has_motion, film->width,
                                   film->height, objects_);
     }
-    RenderStats total = settings.tier == RenderTier::kFast ? render_fast(job) : render_exact(job);
+    RenderStats total =
+        settings.tier == RenderTier::kInteractive ? render_interactive(job) : render_exact(job);
     total.trace_seconds =
         std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     return total;
@@ -119,7 +120,7 @@ class StagedRenderer final : public Renderer {
   }
 
   std::unique_ptr<ViewHistory> make_history() const override {
-    return std::make_unique<FastHistory>();
+    return std::make_unique<InteractiveHistory>();
   }
 
  private:
@@ -132,7 +133,8 @@ class StagedRenderer final : public Renderer {
     const CameraView& view = picture->view;
     job.scene = job.camera.pose.keys.empty() ? scene().view_from(view.X_WC_open)
                                              : scene().view_from(view.X_WC_open, view.X_WC_keys);
-    // Measurements before the picture, and the fast tier, know no times: they see mean lamps.
+    // Measurements before the picture, and the interactive tier, know no times: they see mean
+    // lamps.
     picture->levels = std::exchange(job.scene.light_levels, {});
     job.tracer = traced_.tracer();
     picture->clip = clip_of(view, job.scene, job.camera);
@@ -145,9 +147,9 @@ class StagedRenderer final : public Renderer {
   void plan(Picture* picture) {
     Job& job = picture->job;
     const RenderSettings& settings = job.settings;
-    // The fast tier's cache keeps the light of scenes with a tree by itself.
+    // The interactive tier's cache keeps the light of scenes with a tree by itself.
     picture->is_guided = settings.tier == RenderTier::kPath ||
-                         (settings.tier == RenderTier::kFast && !job.scene.selects_by_tree);
+                         (settings.tier == RenderTier::kInteractive && !job.scene.selects_by_tree);
     if (picture->is_guided && !has_guide_) {
       guide_.build(job.scene, traced_.static_tracer(), described_);
       has_guide_ = true;
@@ -177,14 +179,16 @@ class StagedRenderer final : public Renderer {
     if (picture->is_guided) job.scene.guide = guide_.view();
     const bool has_ambient = tier == RenderTier::kDirect && job.settings.spp > 0;
     if (has_ambient) job.scene.ambient = picture->ambient;
-    // The ambient light, or the fast tier's cache, stands for the sky's light: none is sampled.
-    if (has_ambient || tier == RenderTier::kFast) job.scene.environment.row_cdf = {};
-    if (picture->flickers && tier != RenderTier::kFast) job.scene.light_levels = picture->levels;
+    // The ambient light, or the interactive tier's cache, stands for the sky's light: none is
+    // sampled.
+    if (has_ambient || tier == RenderTier::kInteractive) job.scene.environment.row_cdf = {};
+    if (picture->flickers && tier != RenderTier::kInteractive)
+      job.scene.light_levels = picture->levels;
   }
 
-  RenderStats render_fast(const Job& job) {
-    FastHistory own;
-    auto* history = static_cast<FastHistory*>(job.settings.history);
+  RenderStats render_interactive(const Job& job) {
+    InteractiveHistory own;
+    auto* history = static_cast<InteractiveHistory*>(job.settings.history);
     const RenderStats stats = (history != nullptr ? *history : own).render(job);
     CpuStages cpu;
     if (job.settings.exact_channels) cpu.render_exact_channels(job);

@@ -253,7 +253,9 @@ Status LiveSimulation::set_step_hook(std::function<void(const mjModel_*, mjData_
 
 Result<std::unique_ptr<LiveCamera>> LiveSimulation::open_live_camera(const CameraRequest& request,
                                                                      FrameCallback on_frame) {
-  return LiveCamera::open(stream_context(), request, std::move(on_frame), meters_);
+  CameraRequest wanted = request;
+  wanted.render.tier = request.render.tier_or_default(pace_ == Pace::kRealTime);
+  return LiveCamera::open(stream_context(), wanted, std::move(on_frame), meters_);
 }
 
 Result<std::unique_ptr<SensorStream>> LiveSimulation::open_sensor(const SensorRequest& request,

@@ -186,7 +186,7 @@ RunInfo run_info(const World& world, const RunRequest& request, bool has_media, 
   info.seed = request.simulation.seed;
   info.timestep = timestep;
   info.duration = duration;
-  info.settings = {{"tier", scene.render.tier},
+  info.settings = {{"tier", scene.render.tier_or_default(request.simulation.pace == Pace::kRealTime)},
                    {"spp", std::to_string(scene.render.samples())},
                    {"max_depth", std::to_string(path_depth(scene.render, has_media))},
                    {"denoise", scene.render.denoise ? "true" : "false"}};

@@ -66,8 +66,8 @@ class Programs(ProgramTest):
 
     def test_realistic_scene_is_timed_and_its_images_written(self):
         scene, out = ROOT / "bench" / "realistic_scenes" / "plain_room.toml", self.folder / "images"
-        data = json.loads(self.call("realistic_rate", scene, "--tier", "fast", "--device", "cpu", "--size", "32x24", "--frames", 3, "--out", out, "--json"))
-        self.assertEqual((data["scene"], data["tier"], data["width"], data["height"], data["frames"]), ("plain_room", "fast", 32, 24, 3))
+        data = json.loads(self.call("realistic_rate", scene, "--tier", "interactive", "--device", "cpu", "--size", "32x24", "--frames", 3, "--out", out, "--json"))
+        self.assertEqual((data["scene"], data["tier"], data["width"], data["height"], data["frames"]), ("plain_room", "interactive", 32, 24, 3))
         self.assertTrue(0 < data["image_ms"] <= data["image_p95_ms"], data)
         self.assertTrue(0 < data["renderer_ms"] < data["first_ms"], data)
         self.assertGreater(data["load_ms"], 0)
@@ -78,11 +78,11 @@ class Programs(ProgramTest):
 
     def test_realistic_rate_rejects_wrong_arguments(self):
         scene = ROOT / "bench" / "realistic_scenes" / "plain_room.toml"
-        fast = [scene, "--tier", "fast"]
-        for arguments, code, message in [(["--help"], 0, "usage: "), ([scene], 2, "usage: "), (["--tier", "fast"], 2, "usage: "),
-                                         ([*fast, "--siez", "9x9"], 2, "usage: "), ([*fast, "--device", "gpu"], 2, "usage: "),
-                                         ([scene, "--tier", "slow"], 1, "path, fast, direct"), ([*fast, "--size", "0x5"], 2, "0 x 5"),
-                                         ([*fast, "--camera", "from..two"], 1, "did you mean 'to'"), ([*fast, "--camera", "from..from"], 1, "same place")]:
+        interactive = [scene, "--tier", "interactive"]
+        for arguments, code, message in [(["--help"], 0, "usage: "), ([scene], 2, "usage: "), (["--tier", "interactive"], 2, "usage: "),
+                                         ([*interactive, "--siez", "9x9"], 2, "usage: "), ([*interactive, "--device", "gpu"], 2, "usage: "),
+                                         ([scene, "--tier", "slow"], 1, "path, interactive, direct"), ([*interactive, "--size", "0x5"], 2, "0 x 5"),
+                                         ([*interactive, "--camera", "from..two"], 1, "did you mean 'to'"), ([*interactive, "--camera", "from..from"], 1, "same place")]:
             result = subprocess.run([str(PROGRAM.parent / "bench_realistic_rate"), *map(str, arguments)], capture_output=True, text=True, timeout=120,
                                     env={**os.environ, "GLOAM_CACHE": str(self.folder / "cache")})
             self.assertEqual(result.returncode, code, arguments)

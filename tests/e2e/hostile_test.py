@@ -185,7 +185,7 @@ class Pictures(HostileTest):
         error = self.refuses(model, "16384 x 16384 pixels", "needs about", "GiB", "ulimit -v", "lower the resolution",
                              options=[*every, "--resolution", "16384x16384"])
         self.assertNotIn("interrupted", error)
-        self.refuses(model, "memory", options=["--resolution", "16384x16384", "--tier", "fast"])
+        self.refuses(model, "memory", options=["--resolution", "16384x16384", "--tier", "interactive"])
         self.refuses(model, "16384", options=["--resolution", "16385x16"], code=2)
         scene = self.folder / "scene.toml"
         scene.write_text(scene.read_text().replace("width = 48\nheight = 32", "width = 16384\nheight = 16384"))

@@ -25,7 +25,9 @@ struct SimOptions {
 
 /// [render]: rendering of images.
 struct RenderOptions {
-  std::string tier = "path";    ///< path | fast | direct (docs/light.md)
+  /// path | interactive | direct (docs/light.md); empty = interactive for cameras that open while
+  /// the simulation runs in real time, path for others.
+  std::string tier = {};
   std::optional<int> spp = {};  ///< samples per pixel, 1 … 65536; with `error` the maximum, from 16
   /// Error bound of the path tier: each pixel is sampled until its standard error is this fraction
   /// of its value, 0.0001 … 1 (docs/light.md); empty = the same number of samples in every pixel.
@@ -36,7 +38,7 @@ struct RenderOptions {
   /// cpu | cuda | auto (an NVIDIA GPU if this build and this machine support one, otherwise the
   /// CPU).
   std::string device = "auto";
-  bool denoise = true;  ///< except in the fast tier, which has its own filter
+  bool denoise = true;  ///< except in the interactive tier, which has its own filter
   /// auto | studio | model: light for models without lights. studio: a soft sky, a key light and a
   /// floor, only in colour images; model: the lights of MuJoCo; auto: studio for models without
   /// lamps and sky (docs/light.md).
@@ -49,6 +51,10 @@ struct RenderOptions {
   bool sites = false;  ///< render sites; only cameras see them
   SourceLoc loc = {};
 
+  /// tier, or the default one.
+  std::string tier_or_default(bool real_time) const {
+    return !tier.empty() ? tier : (real_time && !error ? "interactive" : "path");
+  }
   /// spp; if it is empty, 4, or 4096 with `error`.
   int samples() const { return spp.value_or(error ? 4096 : 4); }
 };

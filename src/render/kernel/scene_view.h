@@ -264,7 +264,8 @@ struct FallenView {
   ShelterView shelter;
 };
 
-/// Scenes with more lights have a tree over them, by which the direct and the fast tier select.
+/// Scenes with more lights have a tree over them, by which the direct and the interactive tier
+/// select.
 inline constexpr uint32_t kMaxLightsWithoutTree = 16;
 /// Scenes with more lights select by it in the path tier, too: up to here lights are weighed one by
 /// one, with what the guide knows of each. A furnished house has some thirty.

@@ -1,13 +1,13 @@
-// Lamps by cell: the lists themselves, and the images that the fast tier makes with them.
+// Lamps by cell: the lists themselves, and the images that the interactive tier makes with them.
 
-#include "render/kernel/realtime/lamp_cells.h"
+#include "render/kernel/interactive/lamp_cells.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <vector>
 
-#include "render/test/fast_picture.h"
+#include "render/test/interactive_picture.h"
 
 namespace gloam {
 namespace {
@@ -117,7 +117,7 @@ TEST(LampCells, RoomsWithManyLampsAreThoseOfThePathTier) {
     const CameraView view =
         SceneBuilder::camera(look_at({-5.6f, 1.2f, 1.5f}, {-1.5f, 0.9f, 0}), 96, 72, 40);
     const Film exact = path_picture(b, view, 128, kEndless);
-    const Film film = fast_picture(b, view, 8);
+    const Film film = interactive_picture(b, view, 8);
     EXPECT_NEAR(mean_luminance(film) / mean_luminance(exact), 1, 0.05);
     expect_same_parts(film, exact, 0.15);
   }
@@ -150,7 +150,7 @@ TEST(LampCells, WhatMovesThrowsItsShadowAtOnce) {
   for (uint32_t i = 0; i < 8; ++i) {  // the plate comes when all lists are made
     if (i == 4) SceneBuilder::set_body(&scene.b.frame, scene.plate, translation({0, 0.3f, 1}));
     renderer->update(scene.b.frame, scene.b.frame, before);
-    renderer->render(scene.view, fast_settings(history.get(), i), &film);
+    renderer->render(scene.view, interactive_settings(history.get(), i), &film);
     before = scene.b.frame;
   }
   const Film exact = path_picture(scene.b, scene.view, 256, kEndless);
@@ -172,7 +172,7 @@ TEST(LampCells, LightComesFromWhereALampHasMoved) {
   for (uint32_t i = 0; i < 12; ++i) {
     if (i < 5) b.frame.light_p[0] = -2 + static_cast<float>(i);
     renderer->update(b.frame, b.frame, b.frame);
-    renderer->render(view, fast_settings(history.get(), i), &film);
+    renderer->render(view, interactive_settings(history.get(), i), &film);
   }
   const Film exact = path_picture(b, view, 128, kEndless);
   expect_same_parts(film, exact, 0.1);

@@ -74,14 +74,14 @@ double azimuth_of(const Film& film) {
 TEST(MovingLight, ABeaconLightsWhereItPointsInEveryTier) {
   const SceneBuilder b = beacon();
   const auto renderer = b.make();
-  for (const RenderTier tier : {RenderTier::kPath, RenderTier::kDirect, RenderTier::kFast}) {
+  for (const RenderTier tier : {RenderTier::kPath, RenderTier::kDirect, RenderTier::kInteractive}) {
     RenderSettings settings = settings_of(16, 2);
     settings.tier = tier;
     settings.variance = false;
     for (const double time : {0.0, 0.125, 0.5, 1000.75}) {
       const Film film = film_at(renderer.get(), b.frame, time, over_beacon(), settings);
       const double off = std::remainder(azimuth_of(film) - 2 * M_PI * time, 2 * M_PI);
-      EXPECT_NEAR(off, 0, tier == RenderTier::kFast ? 0.2 : 0.06)
+      EXPECT_NEAR(off, 0, tier == RenderTier::kInteractive ? 0.2 : 0.06)
           << "tier " << static_cast<int>(tier) << " at " << time;
     }
   }
@@ -260,7 +260,7 @@ double worst_lag(const SceneBuilder& b, const CameraView& view, double start, do
   const auto renderer = b.make();
   const auto history = renderer->make_history();
   RenderSettings settings;
-  settings.tier = RenderTier::kFast;
+  settings.tier = RenderTier::kInteractive;
   settings.max_depth = 8;
   double worst = 0;
   for (int i = 0; i < count; ++i) {
@@ -276,11 +276,11 @@ double worst_lag(const SceneBuilder& b, const CameraView& view, double start, do
 }
 
 // A minute in each picture: light falls by 3 % from one to the next.
-TEST(MovingSky, TheFastTierFollowsTheHour) {
+TEST(MovingSky, TheInteractiveTierFollowsTheHour) {
   EXPECT_LT(worst_lag(room_of_a_day(), outside(), 1.5, 1.0 / 60, 30), 0.12);
 }
 
-TEST(MovingLight, TheFastTierFollowsABeacon) {
+TEST(MovingLight, TheInteractiveTierFollowsABeacon) {
   SceneBuilder b = room_with_window({"lamp", 40, 0, 0}, true);
   LightDescription light = beam();
   light.motion = 0;

@@ -31,7 +31,7 @@ float mean_of(const Film& film, int from, int to) {
 }
 
 TEST(SnowLeft, ABodyThatHasShedItsSnowIsBareInBothTiers) {
-  for (const RenderTier tier : {RenderTier::kPath, RenderTier::kFast}) {
+  for (const RenderTier tier : {RenderTier::kPath, RenderTier::kInteractive}) {
     const Film both = snowed_boxes(1, tier), one = snowed_boxes(0, tier);
     const float white = mean_of(both, 38, 42), bare = mean_of(one, 38, 42);
     EXPECT_GT(white, 5 * bare) << "of the body that shed it";

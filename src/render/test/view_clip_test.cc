@@ -29,7 +29,7 @@ Housing housing() {
 }
 
 void expect_wall(const Housing& h, const char* how) {
-  for (const RenderTier tier : {RenderTier::kPath, RenderTier::kDirect, RenderTier::kFast}) {
+  for (const RenderTier tier : {RenderTier::kPath, RenderTier::kDirect, RenderTier::kInteractive}) {
     RenderSettings settings;
     settings.tier = tier;
     settings.spp = 1;
@@ -38,7 +38,7 @@ void expect_wall(const Housing& h, const char* how) {
       ASSERT_NEAR(film.depth[i], 1.75f, 1e-4f) << how;
       ASSERT_EQ(film.part[i], h.wall) << how;
       ASSERT_GE(film.distance[i], film.depth[i] * 0.9999f) << how;
-      if (tier == RenderTier::kFast) continue;  // it leaves no albedo
+      if (tier == RenderTier::kInteractive) continue;  // it leaves no albedo
       ASSERT_NEAR(film.albedo[i].x, 0.5f, 0.02f) << how << " tier " << static_cast<int>(tier);
     }
   }

@@ -102,6 +102,28 @@ TEST(LiveCamera, AViewThatClosesGivesItsPictureUp) {
   EXPECT_TRUE(frames.all().empty());
 }
 
+// Without a tier, cameras of runs in real time have the interactive one, others the path tier.
+TEST(LiveCamera, TheTierFollowsThePace) {
+  const TempFolder folder;
+  const World world = flight(folder);
+  const auto first_image = [&](Pace pace, const std::string& tier) {
+    auto simulation = simulate(world);
+    simulation->set_pace(pace, 1);
+    SlowFrames frames;
+    CameraRequest request = tiny("a/fixed", {50, 1});
+    request.outputs = {"rgb"};
+    request.render = {.tier = tier, .spp = 1, .denoise = false};
+    const auto stream = open(*simulation, request, frames);
+    return frames.wait_for(1)->rgb;
+  };
+  const auto path = first_image(Pace::kLockstep, "path");
+  const auto interactive = first_image(Pace::kLockstep, "interactive");
+  ASSERT_NE(path, interactive);
+  EXPECT_EQ(first_image(Pace::kLockstep, ""), path);
+  EXPECT_EQ(first_image(Pace::kRealTime, ""), interactive);
+  EXPECT_EQ(first_image(Pace::kRealTime, "path"), path);
+}
+
 // MuJoCo's own xpos lags one step behind the state; a frame's poses and depths must not.
 TEST(LiveCamera, PoseDepthAndStampAreOfOneInstant) {
   const TempFolder folder;

@@ -36,7 +36,7 @@ CameraFrame picture(const World& world, const std::string& tier) {
 
 TEST(Look, ColourPicturesAloneShowTheStudio) {
   const TempFolder folder;
-  for (const std::string tier : {"path", "direct", "fast"}) {
+  for (const std::string tier : {"path", "direct", "interactive"}) {
     const CameraFrame studio = picture(unlit(folder, "auto"), tier);
     const CameraFrame model = picture(unlit(folder, "model"), tier);
     EXPECT_NE(studio.rgb, model.rgb) << tier;

@@ -18,7 +18,7 @@ void visit_fields(Visitor& v, SimOptions& o) {
 
 template <class Visitor>
 void visit_fields(Visitor& v, RenderOptions& o) {
-  v("tier", o.tier, FieldRule{.choices = {"path", "fast", "direct"}});
+  v("tier", o.tier, FieldRule{.choices = {"path", "interactive", "direct"}, .may_be_empty = true});
   v("look", o.look, FieldRule{.choices = {"auto", "studio", "model"}});
   v("spp", o.spp, FieldRule{.min = 1, .max = 65536});
   v("error", o.error, FieldRule{.min = 1e-4, .max = 1});

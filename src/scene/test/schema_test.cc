@@ -168,7 +168,8 @@ TEST(Schema, OfScenesTellsOfEveryKey) {
   EXPECT_EQ(stereo["fovy"]["description"], "vertical field of view [deg]");  // of its base
   EXPECT_EQ(stereo["fovy"]["exclusiveMaximum"], 180);
   EXPECT_THAT(stereo["imager"]["description"].get<std::string>(), HasSubstr("Bayer"));
-  EXPECT_EQ(tables["render"]["properties"]["tier"]["enum"], Json({"path", "fast", "direct"}));
+  EXPECT_EQ(tables["render"]["properties"]["tier"]["enum"],
+            Json({"path", "interactive", "direct"}));
   EXPECT_FALSE(tables["render"]["properties"]["spp"].contains("default"));
   const Json& kinds = tables["prop"]["items"]["properties"]["kind"]["enum"];
   EXPECT_EQ(kinds.size(), prop_kinds().size()) << "editors cannot offer every prop";

@@ -170,7 +170,7 @@ Status validate_camera(const CameraOptions& camera) {
 
 Status validate_render(const RenderOptions& render) {
   if (!render.error) return {};
-  if (render.tier != "path") {
+  if (!render.tier.empty() && render.tier != "path") {
     return Error{ErrorKind::kInput,
                  fmt::format("'error' of [render] requires the path tier, not '{}'", render.tier),
                  render.loc, "use 'spp' alone, or set tier = \"path\""};

@@ -68,7 +68,7 @@ Status check_numbers(const CameraRequest& request) {
   }
   if (render.error && !(*render.error >= 1e-4 && *render.error <= 1))
     return refuse(fmt::format("error = {} is not in 0.0001 … 1", *render.error));
-  if (render.error && render.tier != "path") return refuse("'error' requires the path tier");
+  if (render.error && render.tier_or_default(false) != "path") return refuse("'error' requires the path tier");
   if (const int depth = request.render.max_depth.value_or(1); depth < 1 || depth > 64)
     return refuse(fmt::format("max_depth = {} is not in 1 … 64", depth));
   return {};
@@ -150,17 +150,18 @@ Result<std::unique_ptr<CameraSensor>> CameraSensor::create(const RenderDescripti
                            described.aperture_radius, sensor_seed(seed, request.camera));
   }
   RenderSettings& settings = sensor->settings_;
-  if (request.render.tier == "path") {
+  const std::string tier = request.render.tier_or_default(false);
+  if (tier == "path") {
     settings.tier = RenderTier::kPath;
-  } else if (request.render.tier == "fast") {
-    settings.tier = RenderTier::kFast;
-  } else if (request.render.tier == "direct") {
+  } else if (tier == "interactive") {
+    settings.tier = RenderTier::kInteractive;
+  } else if (tier == "direct") {
     settings.tier = RenderTier::kDirect;
   } else {
     return Error{ErrorKind::kInput,
-                 fmt::format("there is no render tier '{}'", request.render.tier),
+                 fmt::format("there is no render tier '{}'", tier),
                  {},
-                 "one of: path, fast, direct"};
+                 "one of: path, interactive, direct"};
   }
   settings.spp = channels.light() ? request.render.samples() : 0;
   if (request.render.error && channels.light()) {
@@ -172,8 +173,9 @@ Result<std::unique_ptr<CameraSensor>> CameraSensor::create(const RenderDescripti
   settings.max_depth = path_depth(request.render, !description.volumes.empty());
   settings.roulette_depth = 2;  // unbiased, and spares the rays of dim paths
   settings.seed = hash_bytes(request.camera.data(), request.camera.size(), seed);
-  if (settings.tier == RenderTier::kFast && !channels.light()) settings.tier = RenderTier::kDirect;
-  if (request.render.denoise && channels.light() && settings.tier != RenderTier::kFast) {
+  if (settings.tier == RenderTier::kInteractive && !channels.light())
+    settings.tier = RenderTier::kDirect;
+  if (request.render.denoise && channels.light() && settings.tier != RenderTier::kInteractive) {
     const bool on_card = renders_on_card(request.render.device);
     sensor->denoiser_ =
         make_denoiser({.device = on_card ? DenoiseDevice::kCuda : DenoiseDevice::kCpu});
@@ -199,13 +201,13 @@ void CameraSensor::set_progress(std::function<bool(double done)> progress) {
 PictureMemory CameraSensor::memory() const {
   const auto pixels =
       static_cast<uint64_t>(intrinsics_.width) * static_cast<uint64_t>(intrinsics_.height);
-  // Planes of render/film/film.h and render/cpu/realtime/fast_frame.h; two of the latter and the
+  // Planes of render/film/film.h and render/cpu/interactive/frame.h; two of the latter and the
   // filter's.
   uint64_t pixel = channels_.light() ? 36 : 0;
   if (settings_.exact_channels) pixel += settings_.exact_details ? sizeof(ExactChannels) : 12;
   if (settings_.error > 0) pixel += 4;
   if (settings_.variance) pixel += sizeof(Vec3f);
-  if (settings_.tier == RenderTier::kFast) pixel += 400;
+  if (settings_.tier == RenderTier::kInteractive) pixel += 400;
   PictureMemory out;
   if (denoiser_ != nullptr) {
     // Measured with Open Image Denoise 2.5, which goes over larger pictures in tiles.
@@ -262,7 +264,7 @@ std::vector<Vec3f>* CameraSensor::render(Renderer& renderer, RenderTurns& turns,
     const RenderTurn turn(turns, use_);
     settings_.turns = &turns;
     renderer.update(keys, previous);
-    if (settings_.tier == RenderTier::kFast && history_ == nullptr) {
+    if (settings_.tier == RenderTier::kInteractive && history_ == nullptr) {
       history_ = renderer.make_history();
       settings_.history = history_.get();
     }
@@ -281,14 +283,14 @@ std::vector<Vec3f>* CameraSensor::render(Renderer& renderer, RenderTurns& turns,
 
 uint32_t CameraSensor::draws(const CameraView& view, int64_t frame_index) const {
   if (sensing().events) return 0;
-  if (denoiser_ == nullptr || settings_.tier == RenderTier::kFast)
+  if (denoiser_ == nullptr || settings_.tier == RenderTier::kInteractive)
     return static_cast<uint32_t>(frame_index);
   const uint64_t index = draws_by_index_ ? static_cast<uint64_t>(frame_index) : 0;
   return static_cast<uint32_t>(hash_bytes(&view.X_WC_open, sizeof(view.X_WC_open), index));
 }
 
 void CameraSensor::begin_samples(const CameraView& view) {
-  const bool may = channels_.light() && settings_.tier != RenderTier::kFast &&
+  const bool may = channels_.light() && settings_.tier != RenderTier::kInteractive &&
                    settings_.error <= 0 && sensing().events == std::nullopt;
   constexpr int kMaxAccumulatedSamples = 1 << 20;  // samples, far from the end of an int
   const bool goes_on = may && same_instant_ && pictures_ > 0 &&
@@ -305,7 +307,7 @@ void CameraSensor::warn_of_noise(Renderer& renderer) {
   if (needed <= settings_.spp || !renderer.first_to_warn()) return;
   log_warning(
       "camera '{}': {} samples per pixel are too few for the light in this smoke or dust: its "
-      "images flicker; use about {} (spp) or the fast tier",
+      "images flicker; use about {} (spp) or the interactive tier",
       camera().name, settings_.spp, needed);
 }
 

@@ -57,8 +57,8 @@ class CameraSensor {
   }
   /// Announces that the next capture is of the same instant as the last one, or not. If its pose is
   /// the same too, it adds samples to the picture: the light is the mean over the captures since
-  /// the first, which it replaces (that one's samples may lie at pixel centres). Not for the fast
-  /// tier, which has a history of its own, for adaptive samples or for events.
+  /// the first, which it replaces (that one's samples may lie at pixel centres). Not for the
+  /// interactive tier, which has a history of its own, for adaptive samples or for events.
   void set_same_instant(bool same) { same_instant_ = same; }
   /// Pictures have draws of their own even where the camera stands still and a denoiser is on: of
   /// stills, which are no frames of one video.
@@ -129,7 +129,7 @@ class CameraSensor {
   Intrinsics intrinsics_;
   Rational rate_;
   std::unique_ptr<CameraModels> models_;  // models after the light
-  std::unique_ptr<ViewHistory> history_;  // history of the fast tier
+  std::unique_ptr<ViewHistory> history_;  // history of the interactive tier
   std::optional<LensDrops> drops_;
   std::unique_ptr<Denoiser> denoiser_;  // null: the samples as they are
   Film film_;

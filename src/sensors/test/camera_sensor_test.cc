@@ -102,7 +102,7 @@ class CameraSensorTest : public ::testing::Test {
 // A picture that other sensors interrupt, at other instants, is the same to the last bit.
 TEST_F(CameraSensorTest, PicturesDoNotDependOnWhoRendersInBetween) {
   const PoseFrame now = poses_at(0), later = poses_at(50), last = poses_at(100);
-  for (const char* tier : {"path", "direct", "fast"}) {
+  for (const char* tier : {"path", "direct", "interactive"}) {
     CameraRequest request = ask("plain", {"radiance", "depth", "segmentation", "boxes"});
     request.width = 320;
     request.height = 240;

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "base/parallel.h"
-#include "render/kernel/realtime/fast_air.h"
+#include "render/kernel/interactive/air.h"
 
 namespace gloam {
 namespace {
@@ -154,8 +154,8 @@ Vec3f StreakFinder::light_of(ParticleKind kind, Vec3f p, Vec2f uv, const Philox4
   const Vec2f u{uniform_float(bits.v[3]), uniform_float(bits.v[3] * 0x9E3779B9u)};
   WalkRandom random(u);
   uint32_t rays = 0;
-  return light + fasts::lamps_in_air(view_.scene, view_.tracer, ray, drop ? kDropG : kFlakeG, u,
-                                     &random, &rays);
+  return light + interactive::lamps_in_air(view_.scene, view_.tracer, ray, drop ? kDropG : kFlakeG,
+                                           u, &random, &rays);
 }
 
 }  // namespace gloam
