@@ -256,6 +256,10 @@ Result<std::unique_ptr<Renderer>> make_cpu_renderer(const RenderDescription& des
 }
 
 Result<std::unique_ptr<Renderer>> make_cuda_renderer(const RenderDescription& description) {
+  if (description.pattern_baking.by_formula) {
+    return Error{ErrorKind::kUnsupported,
+                 "GPUs draw procedural materials baked, the CPU alone by their formulas"};
+  }
   GLOAM_TRY(auto cuda, CudaStages::make());
   GLOAM_TRY(auto scene, RenderScene::make(description));
   GLOAM_TRY(auto embree, EmbreeScene::make());

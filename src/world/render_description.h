@@ -76,12 +76,21 @@ struct CameraDescription {
   std::shared_ptr<const std::vector<uint8_t>> hidden;  ///< flags by instance: not seen; null = none
 };
 
+/// How procedural materials are drawn: baked into textures on the surfaces that wear them when the
+/// scene is loaded, or by their formulas at each hit, which is the reference (the CPU alone does).
+struct PatternBaking {
+  bool by_formula = false;
+  float metres_per_texel = 0.002f;     ///< of the finest texels
+  uint64_t most_bytes = 128ull << 20;  ///< of all textures: texels get coarser to fit
+};
+
 struct RenderDescription {
   std::vector<TriangleMesh> meshes;
   std::vector<DeformableDescription> deformables;
   std::vector<TextureDescription> textures;
   std::vector<MaterialDescription> materials;
   std::vector<ProceduralDescription> procedurals;
+  PatternBaking pattern_baking;
   std::vector<InstanceDescription> instances;
   std::vector<HeightFieldDescription> height_fields;
   std::vector<LightDescription> lights;

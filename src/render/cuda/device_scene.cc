@@ -101,7 +101,10 @@ void DeviceScene::fill(const CudaJob& job, Parcel* parcel, DevicePicture* pictur
   out.texels = keep(scene.texels);
   out.profiles = keep(scene.profiles);
   out.profile_values = keep(scene.profile_values);
-  out.procedurals = keep(scene.procedurals);
+  out.procedurals = {};
+  out.baked.patterns = keep(scene.baked.patterns);
+  out.baked.slots = keep(scene.baked.slots);
+  out.baked.texels = keep(scene.baked.texels);
   out.albedo = static_cast<const AlbedoTable*>(keep(scene.albedo, sizeof(AlbedoTable)));
   if (scene.glass != nullptr) {
     out.glass = static_cast<const GlassTable*>(keep(scene.glass, sizeof(GlassTable)));

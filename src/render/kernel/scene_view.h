@@ -7,6 +7,7 @@
 #include "render/kernel/light/light_tree_view.h"
 #include "render/kernel/math/ray.h"
 #include "render/kernel/media/medium_view.h"
+#include "render/kernel/surface/baked_view.h"
 #include "world/materials/procedural_description.h"
 #include "world/render_description.h"
 #include "world/weather/shelter_map.h"
@@ -41,6 +42,7 @@ struct InstanceView {
   float snow_left = 1;      ///< as in PoseFrame, of its body
   uint32_t material = 0;
   uint32_t mesh = 0;
+  int baked_pattern = -1, baked_wear = -1;  ///< rows of BakedView::patterns
   int light = -1;   ///< row of lights when it emits and can be sampled
   Vec3f size;       ///< [m]
   Vec3f half_size;  ///< of the object that textures are fitted to [m]
@@ -291,6 +293,7 @@ struct SceneView {
   bool selects_by_tree = false;  ///< lights are selected by it
   DeviceSpan<const MaterialLayers> layers;
   DeviceSpan<const ProceduralDescription> procedurals;
+  BakedView baked;
   const AlbedoTable* albedo = nullptr;
   const GlassTable* glass = nullptr;  ///< where some material is glass
   LightGuide guide;

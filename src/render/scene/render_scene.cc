@@ -221,9 +221,19 @@ void RenderScene::follow_live_fields(const PoseFrame& frame) {
   mesh_views_ = meshes_.views(description_);
 }
 
+void RenderScene::bake_patterns(const PoseFrame& frame) {
+  patterns_ = PatternStore::make(description_, frame);
+  const std::vector<InstancePatterns>& rows = patterns_->instances();
+  for (size_t i = 0; i < rows.size(); ++i) {
+    instances_[i].baked_pattern = rows[i].pattern;
+    instances_[i].baked_wear = rows[i].wear;
+  }
+}
+
 void RenderScene::update(std::span<const PoseFrame* const> keys, const PoseFrame& previous) {
   GLOAM_CHECK(!keys.empty(), "there is no key");
   const PoseFrame& open = *keys.front();
+  if (!patterns_) bake_patterns(open);
   follow_live_fields(open);
   volumes_.follow(description_.volumes, open);
   time_ = open.time;
@@ -321,6 +331,7 @@ SceneView RenderScene::view_from(const Affine3f& X_WC, std::span<const Affine3f>
   view.light_tree = lights_.tree();
   view.selects_by_tree = !view.light_tree.nodes.empty();
   view.procedurals = span_of(description_.procedurals);
+  if (patterns_) view.baked = patterns_->view();
   view.layers = span_of(materials_.layers());
   view.albedo = &albedo_;
   view.glass = glass_.get();

@@ -12,6 +12,7 @@
 #include "render/scene/material_store.h"
 #include "render/scene/mesh_store.h"
 #include "render/scene/moving_sky.h"
+#include "render/scene/patterns/pattern_store.h"
 #include "render/scene/profile_store.h"
 #include "render/scene/texture_store.h"
 #include "render/scene/volume_store.h"
@@ -66,6 +67,7 @@ class RenderScene {
   explicit RenderScene(const RenderDescription& description) : description_(description) {}
   void follow_live_fields(const PoseFrame& frame);
   void follow_materials();
+  void bake_patterns(const PoseFrame& frame);
   EnvironmentView described_environment() const;
   bool add_keys(std::span<const PoseFrame* const> keys, const InstanceDescription& in,
                 const Affine3f& X_WG);
@@ -78,6 +80,7 @@ class RenderScene {
   std::optional<EnvironmentTable> environment_;
   std::optional<MovingSky> moving_sky_;
   VolumeStore volumes_;
+  std::optional<PatternStore> patterns_;  ///< baked by the first update
   AlbedoTable albedo_;
   std::unique_ptr<GlassTable> glass_;  ///< where some material is glass
   MaterialStore materials_;

@@ -2,6 +2,7 @@
 // Patterns, wear, weather and layers, applied to a surface after its textures. Device-safe.
 
 #include "render/kernel/bsdf/microfacet.h"
+#include "render/kernel/surface/baked_lookup.h"
 #include "render/kernel/surface/procedural.h"
 #include "render/kernel/surface/surface_textures.h"
 #include "render/kernel/surface/weathering.h"
@@ -20,18 +21,23 @@ GLOAM_HD Vec3Of<F> face_viewer(Vec3Of<F> normal, Vec3Of<F> d) {
 
 namespace surfaces {
 
+/// Sample of row `row` of the procedural materials, which is row `baked` of those on surfaces.
+GLOAM_HD ProceduralSample pattern_at(const SceneView& scene, int row, int baked,
+                                     const ProceduralPoint& at) {
+  if constexpr (!kOnCard) {
+    if (scene.baked.patterns.empty())
+      return eval_procedural(scene.procedurals[static_cast<uint32_t>(row)], at);
+  }
+  return baked_sample(scene.baked, static_cast<uint32_t>(baked), at);
+}
+
 /// The pattern of the material, then what has worn it. Returns the relief in the frame G.
-GLOAM_HD Field apply_patterns(const SceneView& scene, const MaterialLayers& m, Vec3f p_G, Vec3f n_G,
-                              float width, Surface* s) {
-  ProceduralPoint at;
-  at.p = p_G;
-  at.n = n_G;
-  at.footprint = width;
-  at.height = s->p.z;
+GLOAM_HD Field apply_patterns(const SceneView& scene, const MaterialLayers& m,
+                              const ProceduralPoint& at, Surface* s) {
+  const InstanceView& instance = scene.instances[s->instance];
   Field relief;
   if (m.pattern >= 0) {
-    const ProceduralSample own =
-        eval_procedural(scene.procedurals[static_cast<uint32_t>(m.pattern)], at);
+    const ProceduralSample own = pattern_at(scene, m.pattern, instance.baked_pattern, at);
     s->base_color *= own.base_color;
     s->roughness = own.roughness;
     s->metallic = own.metallic;
@@ -41,8 +47,7 @@ GLOAM_HD Field apply_patterns(const SceneView& scene, const MaterialLayers& m, V
     relief = own.relief;
   }
   if (m.wear >= 0) {
-    const ProceduralSample worn =
-        eval_procedural(scene.procedurals[static_cast<uint32_t>(m.wear)], at);
+    const ProceduralSample worn = pattern_at(scene, m.wear, instance.baked_wear, at);
     s->base_color = lerp(s->base_color, worn.base_color, worn.mask);
     s->roughness = lerp(s->roughness, worn.roughness, worn.mask);
     s->metallic = lerp(s->metallic, worn.metallic, worn.mask);
@@ -141,7 +146,9 @@ GLOAM_HD void apply_layers(const SceneView& scene, const RayHit& hit, const Affi
   apply_layer_textures(scene, instance, hit, p_G, n_G, width, s);
   const Weathered weather = weathered_at(scene, m, instance.snow_left, s->p, geometric_W);
   if (m.pattern >= 0 || m.wear >= 0 || weather.any()) {
-    Field relief = apply_patterns(scene, m, p_G, n_G, width, s);
+    ProceduralPoint at{p_G, n_G, width};
+    at.height = s->p.z;
+    Field relief = apply_patterns(scene, m, at, s);
     relief.gradient = transform_vector(X_WG, relief.gradient);
     if (weather.any()) {
       // Water darkens by what it does to the albedo beneath (wet_albedo).
