@@ -23,7 +23,7 @@ namespace gloam {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr std::array kFormats = {kModelCache, kVisualCache, kBvhCache,
+constexpr std::array kFormats = {kModelCache, kVisualCache, kBvhCache,  kPatternCache,
                                  kLightCache, kHullCache,   kSceneCache};
 constexpr size_t kHeadSize = 2 * sizeof(uint64_t);  // the format's number, the hash of the rest
 constexpr size_t kHashedPiece = size_t{16} << 20;

@@ -31,6 +31,8 @@ inline constexpr CacheFormat kBvhCache{"bvhs", ".bvh",
                                        "ray-tracing trees of large meshes, for GPUs"};
 inline constexpr CacheFormat kLightCache{"light", ".light",
                                          "light of the interactive tier's first images"};
+inline constexpr CacheFormat kPatternCache{"patterns", ".pattern",
+                                           "procedural materials, baked onto surfaces"};
 inline constexpr CacheFormat kHullCache{"hulls", ".hulls", "convex parts of meshes"};
 inline constexpr CacheFormat kSceneCache{"scenes", ".scene", "folders of logged scenes"};
 

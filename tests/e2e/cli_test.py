@@ -84,7 +84,7 @@ class Cache(ProgramTest):
         self.assertIn(str(self.folder / "cache" / "visuals"), text)
         self.assertIn("1 entry,", text)
         data = json.loads(self.gloam("cache", "--json").stdout)
-        self.assertEqual([kind["name"] for kind in data["kinds"]], ["models", "visuals", "bvhs", "hulls", "scenes"])
+        self.assertEqual([kind["name"] for kind in data["kinds"]], ["models", "visuals", "bvhs", "patterns", "hulls", "scenes"])
         self.assertEqual([kind["entries"] for kind in data["kinds"]], [0, 1, 0, 0, 0])
         self.assertEqual(data["bytes"], data["kinds"][1]["bytes"])
         self.assertEqual(data["limit_bytes"], 10 << 30)

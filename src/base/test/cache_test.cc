@@ -100,7 +100,7 @@ TEST_F(Cache, TheLimitIsReadAsASize) {
 TEST_F(Cache, ListsAndClears) {
   const Result<CacheInfo> none = cache_info();
   ASSERT_TRUE(none.ok());
-  ASSERT_EQ(none->kinds.size(), 6u);  // models, visuals, bvhs, light, hulls, scenes
+  ASSERT_EQ(none->kinds.size(), 7u);  // models, visuals, bvhs, patterns, light, hulls, scenes
   EXPECT_EQ(none->kinds[0].entries, 0);
   EXPECT_FALSE(none->kinds[0].oldest_use.has_value());
   write(entry(kModelCache, 1), content(1000), hours(5));

@@ -95,24 +95,74 @@ struct TexelSum {
   }
 };
 
+/// Level whose texels suit a footprint [texels of the finest level].
+GLOAM_HD float lod_of(float footprint) {
+  // Samples d apart, each a mean over kBakedFootprint d, blur as much by their interpolation as a
+  // mean over the footprint does when d is this part of it: d²/6 + (kBakedFootprint d)²/12 =
+  // footprint²/12.
+  constexpr float kDistance = 0.615f;
+  const float texels = kDistance * footprint;
+  return texels > 1 ? texturing::log2_of(texels) : 0.0f;
+}
+
 /// Where a footprint is looked up.
 struct BakedLevel {
   int table, level;  ///< the finer of two levels
   float blend;       ///< with the coarser one
 };
 GLOAM_HD BakedLevel level_of(const BakedPattern& pattern, float footprint) {
-  // Samples d apart, each a mean over kBakedFootprint d, blur as much by their interpolation as a
-  // mean over the footprint does when d is this part of it: d²/6 + (kBakedFootprint d)²/12 =
-  // footprint²/12.
-  constexpr float kDistance = 0.615f;
-  const float texels = kDistance * footprint * pattern.per_metre;
-  const float lod = texels > 1 ? texturing::log2_of(texels) : 0.0f;
+  const float lod = lod_of(footprint * pattern.per_metre);
   int table = static_cast<int>(lod * (1.0f / kSideLog2));
   table = table < pattern.tables ? table : pattern.tables - 1;
   const float rest = min(lod - static_cast<float>(kSideLog2 * table), kLevels - 1.0f);
   int level = static_cast<int>(rest);
   level = level < kLevels - 1 ? level : kLevels - 2;
   return {table, level, rest - static_cast<float>(level)};
+}
+
+/// The value of a map that repeats at (u, v) [repeats].
+GLOAM_HD void add_map(const BakedTexel* map, int side, float u, float v, float weight,
+                      TexelSum* sum) {
+  const float x = (u - floorf(u)) * static_cast<float>(side),
+              y = (v - floorf(v)) * static_cast<float>(side);
+  const int last = side - 1;
+  const int i = static_cast<int>(x) & last, j = static_cast<int>(y) & last;
+  const int i1 = (i + 1) & last, j1 = (j + 1) & last;
+  const float wx = x - floorf(x), wy = y - floorf(y);
+  sum->add(map[j * side + i], (1 - wx) * (1 - wy) * weight);
+  sum->add(map[j * side + i1], wx * (1 - wy) * weight);
+  sum->add(map[j1 * side + i], (1 - wx) * wy * weight);
+  sum->add(map[j1 * side + i1], wx * wy * weight);
+}
+
+/// Adds the detail at a place along_face() [m], as much of it as a footprint leaves.
+GLOAM_HD void add_detail(const BakedView& baked, const BakedDetail& detail, int face, Vec3f q,
+                         float footprint, TexelSum* sum) {
+  const float lod = lod_of(footprint * detail.texels_per_metre);
+  const int base = static_cast<int>(lod);
+  if (base >= detail.levels) return;
+  const BakedTexel* map = baked.texels.data + detail.first[face >> 1];
+  int side = detail.side;
+  for (int i = 0; i < base; ++i, side >>= 1) map += side * side;
+  const float u = q.x * detail.repeats.x, v = q.y * detail.repeats.y;
+  const float blend = lod - static_cast<float>(base);
+  TexelSum part;
+  float weight = 1.0f - blend;
+  add_map(map, side, u, v, weight, &part);
+  if (base + 1 < detail.levels) {
+    weight = 1.0f;
+    add_map(map + side * side, side >> 1, u, v, blend, &part);
+  }
+  const auto wide = [&](float x) { return x * (65535.0f / 32767.0f) - weight; };
+  const auto narrow = [&](float x) { return x * (255.0f / 127.0f) - weight; };
+  sum->color += Vec3f{wide(part.color.x), wide(part.color.y), wide(part.color.z)};
+  sum->roughness += wide(part.roughness);
+  sum->metallic += narrow(part.metallic);
+  sum->coat_weight += narrow(part.coat_weight);
+  sum->fuzz += narrow(part.fuzz);
+  sum->mask += narrow(part.mask);
+  sum->slope_u += part.slope_u;
+  sum->slope_v += part.slope_v;
 }
 
 }  // namespace baking
@@ -141,14 +191,19 @@ GLOAM_HD ProceduralSample baked_sample(const BakedView& baked, uint32_t row,
     sum.add_level(tile, where.level, u, v, 1.0f - where.blend);
     if (where.blend > 0) sum.add_level(tile, where.level + 1, u, v, where.blend);
   }
+  if (pattern.detail.levels > 0) {
+    baking::add_detail(baked, pattern.detail, face, baking::along_face(at.p, face), at.footprint,
+                       &sum);
+  }
+  const auto unit = [](float x) { return clamp(x, 0.0f, 1.0f); };
   ProceduralSample s;
-  s.base_color = {min(sum.color.x, 1.0f), min(sum.color.y, 1.0f), min(sum.color.z, 1.0f)};
-  s.roughness = sum.roughness;
-  s.metallic = sum.metallic;
-  s.coat_weight = sum.coat_weight;
+  s.base_color = {unit(sum.color.x), unit(sum.color.y), unit(sum.color.z)};
+  s.roughness = unit(sum.roughness);
+  s.metallic = unit(sum.metallic);
+  s.coat_weight = unit(sum.coat_weight);
   s.coat_roughness = pattern.coat_roughness;
-  s.fuzz = sum.fuzz;
-  s.mask = sum.mask;
+  s.fuzz = unit(sum.fuzz);
+  s.mask = unit(sum.mask);
   s.relief.gradient = baking::from_face({sum.slope_u, sum.slope_v, 0}, face);
   return s;
 }

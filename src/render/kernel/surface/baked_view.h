@@ -44,6 +44,17 @@ struct BakedTexel {
 };
 static_assert(sizeof(BakedTexel) == 16);
 
+/// What texels of a surface are too wide to show, as a map that repeats: the pattern at some other
+/// place, seen sharply, less what is seen of it there through the surface's texels. Its texels hold
+/// such differences, -1 to 1, as 0 to twice 32767 or 127.
+struct BakedDetail {
+  uint32_t first[3] = {};      ///< row of the first texel of the map for each axis
+  int side = 0;                ///< texels along an edge, a power of two
+  int levels = 0;              ///< each of half as many; 0 = there is no detail
+  Vec2f repeats;               ///< of the map per metre along the two axes
+  float texels_per_metre = 0;  ///< of the finest level
+};
+
 /// A procedural material on one surface.
 struct BakedPattern {
   Vec3f low;                 ///< where the cubes begin, in G [m]
@@ -52,7 +63,8 @@ struct BakedPattern {
   int tables = 0;
   bool is_sheet = false;     ///< may rise and sink: one layer of cubes, all of it faces +z
   float coat_roughness = 0;  ///< everywhere
-  BakedTexel mean;           ///< of the whole pattern, where there is no tile
+  BakedDetail detail;
+  BakedTexel mean;  ///< of the whole pattern, where there is no tile
 };
 
 struct BakedSlot {

@@ -1,6 +1,8 @@
 #pragma once
 // Procedural materials, baked onto the surfaces of a scene.
 
+#include <filesystem>
+#include <span>
 #include <vector>
 
 #include "render/kernel/surface/baked_view.h"
@@ -10,8 +12,8 @@ namespace gloam {
 
 class PatternStore {
  public:
-  /// Bakes as the description asks for; nothing where it asks for formulas. `frame` as in
-  /// collect_pattern_surfaces().
+  /// Bakes as the description asks for, or finds what was baked before in the cache; nothing where
+  /// it asks for formulas. `frame` as in collect_pattern_surfaces().
   static PatternStore make(const RenderDescription& description, const PoseFrame& frame);
 
   BakedView view() const;
@@ -19,6 +21,10 @@ class PatternStore {
   const std::vector<InstancePatterns>& instances() const { return instances_; }
 
  private:
+  void bake(const PatternBaking& baking, std::span<PatternSurface> surfaces);
+  bool load(const std::filesystem::path& path, size_t surfaces);
+  void keep(const std::filesystem::path& path);
+
   std::vector<BakedPattern> patterns_;
   std::vector<BakedSlot> slots_;
   std::vector<BakedTexel> texels_;

@@ -25,6 +25,7 @@ struct PatternSurface {
   float texel = 0;  ///< width [m]: choose_texels()
   uint32_t first_table = 0;
   int tables = 0;
+  float lost = 0;  ///< visible_difference() between its texels and the finest
 
   /// Its triangles stand for a curved shape.
   bool is_round() const {

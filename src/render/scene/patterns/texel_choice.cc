@@ -28,7 +28,7 @@ Limits limits_of(const PatternSurface& s, float relax) {
   // Keys of cubes have room for so many; far layers must not fall into one cube.
   const float cubes = static_cast<float>((1 << baking::kCubesLog2) - 2);
   return {max(size.x, max(size.y, size.z)) / (static_cast<float>(baking::kSide) * cubes),
-          relax * max(0.016f, 0.002f * std::sqrt(s.area))};
+          relax * max(0.064f, 0.002f * std::sqrt(s.area))};
 }
 
 /// Index of the width at which what the surface loses and `price` per tile come to the least.
@@ -57,7 +57,9 @@ double choose_all(const std::vector<DetailLost>& lost, const TexelWidths& widths
   double tiles = 0;
   for (size_t i = 0; i < surfaces.size(); ++i) {
     PatternSurface& s = surfaces[i];
-    s.texel = widths[static_cast<size_t>(choose(s, lost[i], widths, price, relax))];
+    const auto width = static_cast<size_t>(choose(s, lost[i], widths, price, relax));
+    s.texel = widths[width];
+    s.lost = lost[i][width];
     tiles += tiles_of(s, s.texel);
   }
   return tiles;
@@ -104,7 +106,7 @@ float visible_difference(const ProceduralSample& a, const ProceduralSample& b, V
   };
   const Vec3f slope = patterns::in_surface(a.relief.gradient - b.relief.gradient, n);
   return length_squared(root(a.base_color) - root(b.base_color)) * (1.0f / 3) +
-         0.25f * min(length_squared(slope), 0.1f) + 0.1f * sqr(a.roughness - b.roughness) +
+         0.05f * min(length_squared(slope), 0.1f) + 0.1f * sqr(a.roughness - b.roughness) +
          0.25f * sqr(a.mask - b.mask);
 }
 

@@ -116,6 +116,27 @@ BakedTexel pack_texel(const ProceduralSample& s, float slope_u, float slope_v) {
   return out;
 }
 
+BakedTexel pack_difference(const ProceduralSample& s, float slope_u, float slope_v) {
+  const auto wide = [](float x) {
+    return static_cast<uint16_t>(std::round(clamp(x, -1.0f, 1.0f) * 32767.0f) + 32767.0f);
+  };
+  const auto narrow = [](float x) {
+    return static_cast<uint8_t>(std::round(clamp(x, -1.0f, 1.0f) * 127.0f) + 127.0f);
+  };
+  BakedTexel out;
+  out.red = wide(s.base_color.x);
+  out.green = wide(s.base_color.y);
+  out.blue = wide(s.base_color.z);
+  out.roughness = wide(s.roughness);
+  out.slope_u = slope(slope_u);
+  out.slope_v = slope(slope_v);
+  out.metallic = narrow(s.metallic);
+  out.coat_weight = narrow(s.coat_weight);
+  out.fuzz = narrow(s.fuzz);
+  out.mask = narrow(s.mask);
+  return out;
+}
+
 void bake_tile(const PatternSurface& surface, std::span<const CubeTriangle> triangles,
                BakedTexel* tile) {
   const TilePlace place = place_of(surface, triangles[0].key);

@@ -10,6 +10,8 @@
 namespace gloam {
 
 BakedTexel pack_texel(const ProceduralSample& sample, float slope_u, float slope_v);
+/// The same of differences of samples, as BakedDetail has them.
+BakedTexel pack_difference(const ProceduralSample& sample, float slope_u, float slope_v);
 
 /// Width of the footprint of a sample, in distances between samples: what bilinear interpolation
 /// blurs by itself is left out of it.
