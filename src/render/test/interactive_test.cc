@@ -354,7 +354,8 @@ TEST(Interactive, NothingTrailsBehindWhatMoves) {
   const float clear = 0.7f * 100 / kPi;
   EXPECT_NEAR(floor_at(-1), clear, 0.05f * clear);
   EXPECT_NEAR(floor_at(0), clear, 0.05f * clear) << "left a second before";
-  EXPECT_NEAR(floor_at(0.2f), clear, 0.08f * clear) << "left two pictures before";
+  // A frame's pixel reaches into the shade, as it is wider than the image's.
+  EXPECT_NEAR(floor_at(0.2f), clear, 0.1f * clear) << "left two pictures before";
 }
 
 }  // namespace

@@ -120,9 +120,9 @@ void InteractiveHistory::compose() {
   });
 }
 
-size_t InteractiveHistory::budget(size_t cells, size_t least) const {
+size_t InteractiveHistory::budget(size_t cells) const {
   const auto pixels = static_cast<size_t>(image_.width) * static_cast<size_t>(image_.height);
-  return std::max(cells * pixels / interactive::kBudgetPixels, least);
+  return std::max(cells * pixels / interactive::kBudgetPixels, interactive::kLeastCells);
 }
 
 void InteractiveHistory::add_frame(const Job& job, const CameraView32& camera, uint32_t pass,
@@ -130,10 +130,9 @@ void InteractiveHistory::add_frame(const Job& job, const CameraView32& camera, u
   const Vec3f eye = job.camera.pose.X_WC_open.p;
   const uint64_t seed = job.settings.seed;
   const CpuTracer movers = job.tracer.moving_part();
-  const size_t most =
-      pictures_ < interactive::kFirstPictures ? interactive::kFirstCells : interactive::kMostCells;
-  const CellBudget cells{budget(interactive::kSettledCells, interactive::kLeastSettledCells),
-                         budget(most, interactive::kLeastChangingCells)};
+  const CellBudget cells{budget(interactive::kSettledCells), pictures_ < interactive::kFirstPictures
+                                                                 ? interactive::kFirstCells
+                                                                 : interactive::kMostCells};
   uint64_t key = 0;  // of the first light on disk
   if (pictures_ == 0 && cache_.size() == 0) {
     key = light_key(job.scene, job.camera, image_.width, image_.height, seed);
@@ -149,9 +148,8 @@ void InteractiveHistory::add_frame(const Job& job, const CameraView32& camera, u
     trace({job.scene, job.tracer, movers, camera, cache, lamps, seed}, pass, job.slices);
     if (lamps) {
       lamp_cells_.ask(lamp_requests_);
-      rays_ += lamp_cells_.update(
-          job.scene, job.tracer, seed,
-          budget(interactive::kOldLampCells, interactive::kLeastSettledCells), watch);
+      rays_ += lamp_cells_.update(job.scene, job.tracer, seed, budget(interactive::kOldLampCells),
+                                  watch);
     }
     cache_.ask(requests_);
     if (first && cache_.size() > interactive::kMaxFirstCells &&

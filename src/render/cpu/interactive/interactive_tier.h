@@ -46,7 +46,7 @@ class InteractiveHistory final : public ViewHistory {
   bool load_first_light(uint64_t key);
   void keep_first_light(uint64_t key);
   /// Number of cells for an image of this size, of the one for an image of kBudgetPixels.
-  size_t budget(size_t cells, size_t least) const;
+  size_t budget(size_t cells) const;
   void trace(const InteractiveView& view, uint32_t pass, RenderSlices* slices);
   /// Traces the tile from the pixel (x0, y0) on. Returns the number of rays.
   uint64_t trace_tile(const InteractiveView& view, uint32_t pass, int x0, int y0,

@@ -6,8 +6,9 @@
 
 namespace gloam::interactive {
 
-/// Pixels of an image that the numbers of cells below are for; others have as many per pixel.
-inline constexpr size_t kBudgetPixels = size_t{640} * 480;
+/// Pixels of an image that some numbers of cells below are for; others have as many per pixel, but
+/// kLeastCells at least.
+inline constexpr size_t kBudgetPixels = size_t{640} * 480, kLeastCells = 32;
 
 // Lights at a surface.
 
@@ -146,15 +147,11 @@ inline constexpr float kRayConeSpread = 0.15f;
 inline constexpr double kMaxSeriesRatio = 0.97, kMinSeriesGain = 0.004;
 /// Pictures of the first instant, one upon the other: the first answer is not to be all noise.
 inline constexpr uint32_t kFirstPictures = 4;
-/// Cells that are traced again for one of these pictures, and for a later one, for an image of
-/// kBudgetPixels; they bound its time.
+/// Cells that are traced again for one of these pictures, and for a later one; they bound its time.
 inline constexpr size_t kFirstCells = 5000, kMostCells = 2500;
-/// The same while the light rests, and fraction of a cell's directions with moving things from
-/// which its light does not.
+/// The same while the light rests, for an image of kBudgetPixels, and fraction of a cell's
+/// directions with moving things from which its light does not.
 inline constexpr size_t kSettledCells = 1000;
-/// Least of these numbers for small images, whose light comes from as many cells out of view: while
-/// the light rests, and while it changes.
-inline constexpr size_t kLeastSettledCells = 32, kLeastChangingCells = 1200;
 inline constexpr float kStirred = 0.01f;
 
 // Excess of single rays, spread over regions of cells.
