@@ -8,6 +8,7 @@
 
 #include "base/parallel.h"
 #include "render/cuda/device_scene.h"
+#include "render/cuda/wavefront.h"
 
 namespace gloam {
 namespace {
@@ -89,7 +90,11 @@ class Card final : public CudaStages {
       picture.split = picture.samples >= 4 ? 4 : (picture.samples >= 2 ? 2 : 1);
       picture.last = done + picture.samples == settings.spp;
       if (settings.tier == RenderTier::kPath) {
-        (plain ? cuda::launch_plain_path : cuda::launch_full_path)(picture, stream_);
+        if (plain) {
+          cuda::launch_plain_path(picture, stream_);
+        } else {
+          wavefront_.render(picture, stream_);
+        }
       } else {
         (plain ? cuda::launch_plain_direct : cuda::launch_full_direct)(picture, stream_);
       }
@@ -186,6 +191,7 @@ class Card final : public CudaStages {
   std::string name_;
   cuda::Stream stream_ = nullptr;
   cuda::DeviceScene scene_;
+  cuda::Wavefront wavefront_;
   cuda::DeviceBuffer film_, ambient_;
   cuda::PinnedBuffer staging_;
   size_t film_bytes_ = 0;

@@ -52,10 +52,9 @@ namespace cuda {
 
 using Stream = CUstream_st*;
 
-// Kernels for plain pictures, and for any. Those of paths are compiled with fast arithmetic; those
-// of exact channels round as on the CPU.
+// Kernels for plain pictures, and for any; the paths of any others are in wavefront.h. Those of
+// paths are compiled with fast arithmetic; those of exact channels round as on the CPU.
 void launch_plain_path(const DevicePicture& picture, Stream stream);
-void launch_full_path(const DevicePicture& picture, Stream stream);
 void launch_plain_direct(const DevicePicture& picture, Stream stream);
 void launch_full_direct(const DevicePicture& picture, Stream stream);
 /// Exact channels of all pixels, or of those of kUnknownPart alone.

@@ -7,15 +7,9 @@
 namespace gloam::cuda {
 namespace {
 
-#ifdef GLOAM_PLAIN_KERNELS
-constexpr int kPathBlocks = kPlainPathBlocks;
-#else
-constexpr int kPathBlocks = kBlocks;
-#endif
-
 /// Each warp has a tile's pixels and a fraction of their samples; the warps of a tile meet in
 /// shared memory, in order.
-__global__ void __launch_bounds__(kBlock, kPathBlocks)
+__global__ void __launch_bounds__(kBlock, kPlainPathBlocks)
     path_kernel(const __grid_constant__ DevicePicture p) {
   __shared__ PixelMean means[kBlock];
   const SceneView& scene = p.scene;

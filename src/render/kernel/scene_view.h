@@ -251,6 +251,13 @@ inline constexpr bool kPlainScenes = true;
 inline constexpr bool kPlainScenes = false;
 #endif
 
+/// Kernels for scenes without media, in which all else may be.
+#if defined(__CUDA_ARCH__) && defined(GLOAM_KERNELS_WITHOUT_MEDIA)
+inline constexpr bool kNoMedia = true;
+#else
+inline constexpr bool kNoMedia = kPlainScenes;
+#endif
+
 #ifdef __CUDA_ARCH__
 inline constexpr bool kOnCard = true;
 #else
@@ -312,7 +319,7 @@ struct SceneView {
   GLOAM_HD bool has_textures() const { return !kPlainScenes && textures.size > 0; }
   GLOAM_HD bool has_layers() const { return !kPlainScenes && layers.size > 0; }
   GLOAM_HD bool has_fallen() const { return !kPlainScenes && fallen.wetness + fallen.snow > 0; }
-  GLOAM_HD bool has_media() const { return !kPlainScenes && media.volumes.size > 0; }
+  GLOAM_HD bool has_media() const { return !kNoMedia && media.volumes.size > 0; }
   /// Whether a medium's light is sampled. Not on a card, where rays find it by chance alone:
   /// kernels for all scenes are too long as they are.
   GLOAM_HD bool has_glow() const { return !kOnCard && media.glows.size > 0; }

@@ -132,16 +132,22 @@ struct SegmentEndOf {
   MaskOf<F> scatters = false;       ///< at the surface, or at the medium vertex
 };
 
-/// Adds the light of what the rays of the `active` lanes have met, and decides what the paths do
-/// there.
+/// Medium vertex or surface that a segment leads to, before the surface is looked at.
 template <class F>
-GLOAM_HD SegmentEndOf<F> end_segment(const SceneView& scene, const PathOptions& options,
-                                     State<F>* state, MaskOf<F> active, MaskOf<F> found,
-                                     const RayHitOf<F>& hit) {
+struct ArrivalOf {
+  MediumVertexOf<F> medium_vertex;
+  MaskOf<F> found = false;  ///< a surface, which may scatter or give off light
+};
+
+/// Adds the light of lamps, media and the sky along the segments of the `active` lanes, and tells
+/// where they lead. `found` and `hit`: what their rays have met.
+template <class F>
+GLOAM_HD ArrivalOf<F> arrive(const SceneView& scene, const PathOptions& options, State<F>* state,
+                             MaskOf<F> active, MaskOf<F> found, const RayHitOf<F>& hit) {
   using Mask = MaskOf<F>;
   State<F>& path = *state;
   const uint32_t max_depth = static_cast<uint32_t>(options.max_depth);
-  SegmentEndOf<F> out;
+  ArrivalOf<F> out;
   const Mask scattered = path.pdf_bsdf > 0.0f;
   if (scene.has_visible_lights && any(active & scattered)) {
     Vec2Of<F> u;
@@ -169,16 +175,26 @@ GLOAM_HD SegmentEndOf<F> end_segment(const SceneView& scene, const PathOptions& 
   }
   const Mask last = found & (path.depth > 0u) & (path.depth + 1u >= max_depth);
   if (any(last)) found = found & !gives_nothing(scene, hit, last);
-  if (!any(found | medium_vertex.scattered)) return out;
-  const F way = select(medium_vertex.scattered, medium_vertex.t, hit.t);
+  out.found = found;
+  return out;
+}
+
+/// Adds what the surfaces `v` give off, and decides what the paths do at the vertices of `at`.
+template <class F>
+GLOAM_HD void meet(const SceneView& scene, const PathOptions& options, const ArrivalOf<F>& at,
+                   State<F>* state, SegmentEndOf<F>* out) {
+  using Mask = MaskOf<F>;
+  State<F>& path = *state;
+  SurfaceOf<F>& v = out->v;
+  const uint32_t max_depth = static_cast<uint32_t>(options.max_depth);
+  const MediumVertexOf<F>& medium_vertex = out->medium_vertex = at.medium_vertex;
+  const Mask found = at.found;
+  const F way = select(medium_vertex.scattered, medium_vertex.t, v.t);
   if (scene.has_layers() && any(max_component(path.absorption) > 0.0f)) {
     path.throughput *= through_glass(path.absorption, way);
   }
-
-  SurfaceOf<F>& v = out.v;
-  v = make_surface(scene, path.ray, hit, RayConeOf<F>{path.cone_width, path.cone_spread}, found);
   weigh_emission(scene, path, found, &v);
-  Mask& through = out.through;
+  Mask& through = out->through;
   if (scene.lets_light_through()) {
     const F opacity = opacity_of(v);
     const Mask thin = found & (opacity < 1.0f) & !(path.passed >= kMaxPassed);
@@ -208,7 +224,7 @@ GLOAM_HD SegmentEndOf<F> end_segment(const SceneView& scene, const PathOptions& 
   path.result.radiance += select<F>(solid, path.throughput * v.emission, Vec3Of<F>{});
 
   path.depth += select(solid | medium_vertex.scattered, UintOf<F>(1u), UintOf<F>(0u));
-  Mask& scatters = out.scatters;
+  Mask& scatters = out->scatters;
   scatters = (solid | medium_vertex.scattered) & !(path.depth >= max_depth);
   if (const Mask chance = scatters & (path.depth > static_cast<uint32_t>(options.roulette_depth));
       any(chance)) {
@@ -217,8 +233,22 @@ GLOAM_HD SegmentEndOf<F> end_segment(const SceneView& scene, const PathOptions& 
     path.throughput = select<F>(chance, path.throughput / survive, path.throughput);
   }
   if (any(through)) {  // past the surface, as if it were not there
-    path.ray.o = select<F>(through, leave_surface(v.p, v.geometric, path.ray.d, hit.t), path.ray.o);
+    path.ray.o = select<F>(through, leave_surface(v.p, v.geometric, path.ray.d, v.t), path.ray.o);
   }
+}
+
+/// Adds the light of what the rays of the `active` lanes have met, and decides what the paths do
+/// there.
+template <class F>
+GLOAM_HD SegmentEndOf<F> end_segment(const SceneView& scene, const PathOptions& options,
+                                     State<F>* path, MaskOf<F> active, MaskOf<F> found,
+                                     const RayHitOf<F>& hit) {
+  SegmentEndOf<F> out;
+  const ArrivalOf<F> at = arrive(scene, options, path, active, found, hit);
+  if (!any(at.found | at.medium_vertex.scattered)) return out;
+  out.v = make_surface(scene, path->ray, hit, RayConeOf<F>{path->cone_width, path->cone_spread},
+                       at.found);
+  meet(scene, options, at, path, &out);
   return out;
 }
 

@@ -10,19 +10,49 @@ namespace paths {
 
 /// A shadow ray, maybe on its way through surfaces that let light through.
 struct ShadowWalk {
-  Ray ray;
+  Ray ray;  ///< the part that is left of it
   Vec3f arriving;
   uint32_t passed = 0;
+  float length = 0;  ///< of the whole ray [m]
+
+  GLOAM_HD static ShadowWalk of(const NextEventOf<float>& event) {
+    return {event.shadow, event.arriving, 0, event.shadow.tmax};
+  }
+  GLOAM_HD Ray whole_ray() const {
+    return {ray.o + ray.d * (ray.tmax - length), ray.d, length, ray.time};
+  }
 };
 
 /// Takes the surface that the shadow ray has hit; true where the ray goes on behind it.
-GLOAM_HD bool pass_surface(const SceneView& scene, const RayHit& hit, ShadowWalk* walk) {
-  const Surface s = make_surface<float>(scene, walk->ray, hit, {});
+GLOAM_HD bool pass_surface(const Surface& s, ShadowWalk* walk) {
   walk->arriving *= walk->passed < kMaxPassed ? passing_light(s) : Vec3f{};
-  walk->ray.o = leave_surface(s.p, s.geometric, walk->ray.d, hit.t);
-  walk->ray.tmax -= hit.t;
+  walk->ray.o = leave_surface(s.p, s.geometric, walk->ray.d, s.t);
+  walk->ray.tmax -= s.t;
   ++walk->passed;
   return max_component(walk->arriving) > 0 && walk->ray.tmax > 0;
+}
+
+/// Adds the light that is left at the end of a shadow ray.
+GLOAM_HD void add_shadow_light(const SceneView& scene, const ShadowWalk& walk, State<float>* path) {
+  if (!(max_component(walk.arriving) > 0)) return;
+  path->result.radiance +=
+      walk.arriving * through_media(scene, walk.whole_ray(), true, &path->sampler);
+}
+
+/// Samples a light and a direction at the surface; true where the path goes on.
+GLOAM_HD bool sample_at_surface(const SceneView& scene, const PathOptions& options,
+                                const Surface& v, State<float>* path, NextEventOf<float>* event) {
+  ScatterOf<float> how;
+  *event = sample_light(scene, path, v, true, &how);
+  return sample_direction(scene, options, path, v, how, true);
+}
+/// The same in media.
+GLOAM_HD bool sample_in_media(const SceneView& scene, const PathOptions& options,
+                              const MediumVertexOf<float>& v, State<float>* path,
+                              NextEventOf<float>* event) {
+  MediumScatterOf<float> how;
+  *event = sample_light_in_media(scene, path, v, true, &how);
+  return sample_phase_direction(scene, options, path, v, how, true);
 }
 
 }  // namespace paths
@@ -64,12 +94,13 @@ class PathMachine {
     if (in_shadow_) {
       ++path_.result.rays;
       if (scene.lets_light_through()) {
-        in_shadow_ = found && paths::pass_surface(scene, hit, &shadow_);
-        if (!in_shadow_) add_shadow_light(scene);
+        in_shadow_ = found && paths::pass_surface(make_surface<float>(scene, shadow_.ray, hit, {}),
+                                                  &shadow_);
+        if (!in_shadow_) paths::add_shadow_light(scene, shadow_, &path_);
         return in_shadow_ || continues_;
       }
       in_shadow_ = false;
-      if (!shadowed) add_shadow_light(scene);
+      if (!shadowed) paths::add_shadow_light(scene, shadow_, &path_);
     }
     if (!continues_) return false;
     ++path_.result.rays;
@@ -85,27 +116,13 @@ class PathMachine {
   GLOAM_HD void scatter(const SceneView& scene, const PathOptions& options,
                         const paths::SegmentEndOf<float>& at) {
     paths::NextEventOf<float> event;
-    if (at.medium_vertex.scattered) {
-      paths::MediumScatterOf<float> how;
-      event = paths::sample_light_in_media(scene, &path_, at.medium_vertex, true, &how);
-      continues_ =
-          paths::sample_phase_direction(scene, options, &path_, at.medium_vertex, how, true);
-    } else {
-      paths::ScatterOf<float> how;
-      event = paths::sample_light(scene, &path_, at.v, true, &how);
-      continues_ = paths::sample_direction(scene, options, &path_, at.v, how, true);
-    }
+    continues_ = at.medium_vertex.scattered
+                     ? paths::sample_in_media(scene, options, at.medium_vertex, &path_, &event)
+                     : paths::sample_at_surface(scene, options, at.v, &path_, &event);
     if (!event.lit) return;
-    shadow_ = {event.shadow, event.arriving, 0};
+    shadow_ = paths::ShadowWalk::of(event);
     in_shadow_ = event.casts_shadow;
-    if (!in_shadow_) add_shadow_light(scene);
-  }
-
-  /// Adds the light that is left of the shadow ray's.
-  GLOAM_HD void add_shadow_light(const SceneView& scene) {
-    if (!(max_component(shadow_.arriving) > 0)) return;
-    path_.result.radiance +=
-        shadow_.arriving * paths::through_media(scene, shadow_.ray, true, &path_.sampler);
+    if (!in_shadow_) paths::add_shadow_light(scene, shadow_, &path_);
   }
 
   paths::State<float> path_;

@@ -1,0 +1,42 @@
+// Stage of the wavefront that samples lights and directions at surfaces.
+#define GLOAM_KERNELS_WITHOUT_MEDIA
+#include "render/cuda/wave_pool.cuh"
+
+namespace gloam::cuda {
+namespace {
+
+__global__ void __launch_bounds__(kBlock, kBlocks)
+    scatter_kernel(const __grid_constant__ DevicePicture p, const __grid_constant__ WaveTurn w) {
+  const WavePool& pool = w.pool;
+  const uint32_t count = pool.counts->sorted;
+  for (uint32_t i = blockIdx.x * kBlock + threadIdx.x; i < count; i += w.blocks * kBlock) {
+    const uint32_t item = pool.sorted[i], slot = item >> 1;
+    if ((item & 1u) != 0) continue;  // a shadow ray's
+    paths::State<float> path = pool.path.load(slot);
+    path.light_sampler.keep_in(pool.lights + slot);
+    paths::SegmentEndOf<float> at;
+    at.v = pool.surface.load(slot);
+    paths::ArrivalOf<float> arrival;
+    arrival.found = true;
+    paths::meet(p.scene, p.path, arrival, &path, &at);
+    bool goes_on = at.through;
+    if (at.scatters) {
+      LightProbabilitiesOf<float> probabilities;
+      path.light_sampler.keep_in(&probabilities);
+      paths::NextEventOf<float> event;
+      goes_on = paths::sample_at_surface(p.scene, p.path, at.v, &path, &event);
+      if (goes_on) keep_lights(p.scene, pool, slot, probabilities);
+      if (event.lit) cast_shadow(w, slot, event);
+    }
+    pool.path.store(slot, path);
+    if (goes_on) pool.paths[w.out()][append(&pool.counts->paths[w.out()])] = slot;
+  }
+}
+
+}  // namespace
+
+void launch_wave_scatter(const DevicePicture& p, const WaveTurn& w, Stream stream) {
+  scatter_kernel<<<w.blocks, kBlock, 0, stream>>>(p, w);
+}
+
+}  // namespace gloam::cuda
