@@ -119,6 +119,24 @@ std::vector<Case> cases() {
   smoke.scene.description.media = media.media;
   smoke.scene.description.volumes = media.volumes;
   all.push_back(smoke);
+  // Rays of paths and of shadows go on through panes, in fog; a sky is sampled beside the lamps.
+  Case panes{"panes in fog under a sky", smoke.scene, {}, usual_view()};
+  MaterialDescription pane;
+  pane.transmission_weight = 1;
+  pane.thin_walled = true;
+  pane.roughness = 0;
+  pane.transmission_color = {0.9f, 0.7f, 0.6f};
+  const int sheet = panes.scene.add_material(pane);
+  for (int i = 0; i < 4; ++i) {
+    const float along = 0.5f * static_cast<float>(i);
+    panes.scene.add(ShapeType::kBox, {1.5f, 0.01f, 1},
+                    rigid({0, 0, 1}, along, {along - 1, -0.6f - along, 1}), sheet);
+  }
+  panes.scene.add(ShapeType::kSphere, {0.15f, 0, 0}, translation({-1, 1, 1.5f}),
+                  panes.scene.add_emitter({400, 300, 100}));
+  panes.scene.description.sky.environment = {
+      "even", 2, 2, {{3, 3, 4}, {4, 3, 3}, {1, 2, 1}, {2, 1, 1}}};
+  all.push_back(panes);
   Case lens{"a wide lens' rolling shutter", all_shapes(plain_material), {}, usual_view(), true};
   lens.view.intrinsics.lens = LensModel::kEquidistant;
   lens.view.shutter = {0.1f, 0.5f, 0.4f / kHeight};
