@@ -35,7 +35,9 @@ function(gloam_cuda_sources target)
     set(object ${CMAKE_CURRENT_BINARY_DIR}/${name}.cu.o)
     set(flags -DGLOAM_INLINE=inline)
     set(code compute_${GLOAM_CUDA_ARCH})
-    if(name MATCHES "^plain")  # these kernels are small: what they leave out must fold away in all that they call
+    # The plain kernels are small: what they leave out must fold away in all that they call. A call at the vertices of paths
+    # would put their state into memory.
+    if(name MATCHES "^(plain|wave_scatter)")
       set(flags -DGLOAM_INLINE=__forceinline__)
     endif()
     # Where only a test asks for them, the card's driver is left to make machine code of the large kernels: minutes less.

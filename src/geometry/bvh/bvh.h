@@ -53,7 +53,8 @@ struct alignas(16) BvhInstance {
   int32_t motion = -1;  ///< first row of BvhView::motion; -1 = stands still
   /// Step from the triangles of one key to those of the next, for a mesh that changes its form; 0 =
   /// it does not
-  uint32_t key_step = 0;
+  uint32_t key_step : 31 = 0;
+  uint32_t is_clear : 1 = 0;  ///< may let light straight through
 };
 static_assert(sizeof(BvhInstance) == 64);
 

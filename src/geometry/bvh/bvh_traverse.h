@@ -28,11 +28,12 @@ struct BvhShadow {
 ///   float meet(const BvhInstance&, Vec3f o_G, Vec3f d_G, float time, float tmax) const
 /// is the distance in (0, tmax], or a value <= 0. kMoves: something may move in time. kByStep: a
 /// turn of the loop is a node or a triangle, not all nodes on the way to a leaf and then the leaf:
-/// no lane of a card waits for another's run, which ends few long rays sooner.
+/// no lane of a card waits for another's run, which ends few long rays sooner. `clear`, if not
+/// null: with `any`, instances that may let light through are passed, and *clear is then set.
 template <bool kMoves, bool kByStep, class Solids>
 GLOAM_HD bool traverse(const BvhView& view, const Solids& solids, Vec3f o, Vec3f d, float time,
                        float tmax, bool any, BvhHit* hit, const BvhShadow* shadow = nullptr,
-                       bool* shadowed = nullptr) {
+                       bool* shadowed = nullptr, bool* clear = nullptr) {
   using namespace bvh;
   constexpr int kStack = kMeshDepth + kTopDepth + 2;
   BvhRef stack[kStack];
@@ -93,8 +94,12 @@ GLOAM_HD bool traverse(const BvhView& view, const Solids& solids, Vec3f o, Vec3f
     } else if ((ref & kKind) == kInstance) {
       const uint32_t next = ref & ~kKind;
       const BvhInstance& in = view.instances[next];
+      const bool passes = clear != nullptr && any && in.is_clear != 0;
       const LocalRay inside = into_instance<kMoves>(view, in, from, along, time);
-      if (in.root == kNothing) {
+      if (passes) {
+        *clear = true;
+        ref = stack[--top];
+      } else if (in.root == kNothing) {
         const float t = solids.meet(in, inside.o, inside.d, time, best);
         if (t > 0) {
           if (any || in_shadow) {

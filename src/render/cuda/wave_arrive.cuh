@@ -20,8 +20,13 @@ __global__ void __launch_bounds__(kBlock, kBlocks)
     paths::State<float> path = pool.path.load(slot);
     path.light_sampler.keep_in(pool.lights + slot);
     RayHit hit = pool.hit.load(slot);
+    const Vec3f before = path.result.radiance;
     const paths::ArrivalOf<float> at = paths::arrive(p.scene, p.path, &path, true, hit.t >= 0, hit);
-    pool.path.store(slot, path);
+    if (p.scene.has_media()) {
+      pool.path.store(slot, path);
+    } else if (!(path.result.radiance == before)) {
+      pool.path.store(slot, path, kResult, kResult + sizeof before);
+    }
     if (at.medium_vertex.scattered) {
       hit.t = at.medium_vertex.t;
       hit.instance = at.medium_vertex.volume;

@@ -35,7 +35,7 @@ __global__ void __launch_bounds__(kBlock, kBlocks)
       paths::NextEventOf<float> event;
       goes_on = paths::sample_in_media(p.scene, p.path, at.medium_vertex, &path, &event);
       if (goes_on) keep_lights(p.scene, pool, slot, probabilities);
-      if (event.lit) cast_shadow(w, slot, event);
+      if (event.lit) cast_shadow(p, w, slot, event);
     }
     pool.path.store(slot, path);
     if (goes_on) pool.paths[w.out()][append(&pool.counts->paths[w.out()])] = slot;

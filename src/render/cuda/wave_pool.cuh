@@ -1,6 +1,8 @@
 #pragma once
 // Paths of a wavefront in the card's memory, and the launches of its stages.
 
+#include <cstddef>
+
 #include "render/cuda/pixels.cuh"
 #include "render/kernel/path/path_machine.h"
 
@@ -21,11 +23,16 @@ struct SlotArray {
     memcpy(&value, bytes, sizeof(T));
     return value;
   }
-  __device__ __forceinline__ void store(uint32_t slot, const T& value) const {
+  /// Stores the pieces that hold the bytes from `begin` to `end`.
+  __device__ __forceinline__ void store(uint32_t slot, const T& value, size_t begin = 0,
+                                        size_t end = sizeof(T)) const {
     float4 bytes[kPieces] = {};
     memcpy(bytes, &value, sizeof(T));
 #pragma unroll
-    for (uint32_t k = 0; k < kPieces; ++k) pieces[k * slots + slot] = bytes[k];
+    for (uint32_t k = 0; k < kPieces; ++k) {
+      if ((k + 1) * sizeof(float4) > begin && k * sizeof(float4) < end)
+        pieces[k * slots + slot] = bytes[k];
+    }
   }
 };
 
@@ -38,6 +45,9 @@ struct WaveCounts {
   uint32_t lit;                   ///< shadow rays that have arrived, in media
   uint32_t in_media, scattering;  ///< vertices in media, and the same once the turn's are complete
 };
+
+/// Where the light of a path is in its state.
+inline constexpr size_t kResult = offsetof(paths::State<float>, result);
 
 /// A path of `WavePool::paths` that has met its surface and waits for its shadow ray.
 inline constexpr uint32_t kTraced = 1u << 31;
@@ -90,23 +100,35 @@ __device__ __forceinline__ void meet_surface(const DevicePicture& p, const WaveP
   pool.met[append(&pool.counts->met)] = {slot << 1 | (by_shadow ? 1u : 0u), bin};
 }
 
-/// Puts the slot's shadow ray on the list of the next turn. One that needs no trace ends there.
-__device__ __forceinline__ void cast_shadow(const WaveTurn& w, uint32_t slot,
-                                            const paths::NextEventOf<float>& event) {
+/// Kernels for surfaces know nothing of media; some of what they keep is for media alone.
+__device__ __forceinline__ bool keeps_for_media(const DevicePicture& p) {
+  return p.scene.media.volumes.size > 0;
+}
+
+/// Stores the shadow ray and puts it on the list of the next turn.
+__device__ __forceinline__ void cast_shadow(const DevicePicture& p, const WaveTurn& w,
+                                            uint32_t slot, const paths::ShadowWalk& walk) {
+  w.pool.shadow.store(slot, walk, 0,
+                      keeps_for_media(p) ? sizeof walk : offsetof(paths::ShadowWalk, length));
+  w.pool.shadows[w.out()][append(&w.pool.counts->shadows[w.out()])] = slot;
+}
+
+/// The same for light that has been sampled. Light that casts no shadow has arrived.
+__device__ __forceinline__ void cast_shadow(const DevicePicture& p, const WaveTurn& w,
+                                            uint32_t slot, const paths::NextEventOf<float>& event) {
   paths::ShadowWalk walk = paths::ShadowWalk::of(event);
   if (!event.casts_shadow) {
     walk.ray.o = walk.ray.o + walk.ray.d * walk.length;
     walk.ray.tmax = 0;
   }
-  w.pool.shadow.store(slot, walk);
-  w.pool.shadows[w.out()][append(&w.pool.counts->shadows[w.out()])] = slot;
+  cast_shadow(p, w, slot, walk);
 }
 
 /// Keeps the probabilities of lights at the path's vertex for the end of its next segment.
 __device__ __forceinline__ void keep_lights(const SceneView& scene, const WavePool& pool,
                                             uint32_t slot,
                                             const LightProbabilitiesOf<float>& probabilities) {
-  if (scene.has_many_lights()) return;
+  if (scene.has_many_lights() || !scene.has_emitters) return;  // no ray will ask for them
   float4* const to = reinterpret_cast<float4*>(pool.lights[slot].of);
   const float* from = probabilities.of;
   for (uint32_t i = 0; i < scene.lights.size; i += 4) {

@@ -5,7 +5,9 @@
 namespace gloam::cuda {
 namespace {
 
-__global__ void __launch_bounds__(kBlock, kBlocks)
+constexpr int kScatterBlocks = 3;  ///< on a multiprocessor: 168 registers a thread
+
+__global__ void __launch_bounds__(kBlock, kScatterBlocks)
     scatter_kernel(const __grid_constant__ DevicePicture p, const __grid_constant__ WaveTurn w) {
   const WavePool& pool = w.pool;
   const uint32_t count = pool.counts->sorted;
@@ -26,9 +28,13 @@ __global__ void __launch_bounds__(kBlock, kBlocks)
       paths::NextEventOf<float> event;
       goes_on = paths::sample_at_surface(p.scene, p.path, at.v, &path, &event);
       if (goes_on) keep_lights(p.scene, pool, slot, probabilities);
-      if (event.lit) cast_shadow(w, slot, event);
+      if (event.lit) cast_shadow(p, w, slot, event);
     }
-    pool.path.store(slot, path);
+    if (goes_on || keeps_for_media(p)) {
+      pool.path.store(slot, path);
+    } else {
+      pool.path.store(slot, path, kResult, kResult + sizeof path.result);
+    }
     if (goes_on) pool.paths[w.out()][append(&pool.counts->paths[w.out()])] = slot;
   }
 }

@@ -6,19 +6,17 @@ namespace gloam::cuda {
 namespace {
 
 /// The shadow ray goes on behind the surface, or ends there.
-__device__ void pass_shadow(const WaveTurn& w, uint32_t slot, const Surface& s,
-                            paths::ShadowWalk walk) {
-  const WavePool& pool = w.pool;
+__device__ void pass_shadow(const DevicePicture& p, const WaveTurn& w, uint32_t slot,
+                            const Surface& s, paths::ShadowWalk walk) {
   if (!paths::pass_surface(s, &walk)) {
     if (!(max_component(walk.arriving) > 0)) {
-      pool.in_shadow[slot] = 0;
+      w.pool.in_shadow[slot] = 0;
       return;
     }
     walk.ray.o = walk.ray.o + walk.ray.d * walk.ray.tmax;  // the light lies within rounding
     walk.ray.tmax = 0;
   }
-  pool.shadow.store(slot, walk);
-  pool.shadows[w.out()][append(&pool.counts->shadows[w.out()])] = slot;
+  cast_shadow(p, w, slot, walk);
 }
 
 __global__ void __launch_bounds__(kBlock, kBlocks)
@@ -44,7 +42,7 @@ __global__ void __launch_bounds__(kBlock, kBlocks)
     }
     const Surface s = make_surface<float>(p.scene, ray, hit, cone);
     if (by_shadow) {
-      pass_shadow(w, slot, s, walk);
+      pass_shadow(p, w, slot, s, walk);
     } else {
       pool.surface.store(slot, s);
     }

@@ -9,8 +9,8 @@
 namespace gloam::cuda {
 namespace {
 
-/// Paths at once, at most: enough to fill the card many times over, in less than a gigabyte.
-constexpr uint32_t kMostSlots = 1u << 20;
+/// Paths at once, at most: enough to fill the card many times over, in three gigabytes.
+constexpr uint32_t kMostSlots = 1u << 22;
 constexpr int kTraceBlocks = 8;  ///< on a multiprocessor: 64 registers a thread
 constexpr unsigned kSortBlocks = 512, kSortBlock = 256;
 /// Blocks of the kernels of late turns, in which few paths are left behind panes and leaves.
@@ -56,22 +56,22 @@ __global__ void __launch_bounds__(kBlock)
   if (starts) pool.paths[0][append(&pool.counts->paths[0])] = slot;
 }
 
-/// What becomes of a shadow ray that has been traced.
-__device__ void end_shadow(const DevicePicture& p, const WavePool& pool, uint32_t slot, bool found,
-                           const RayHit& hit) {
+/// What becomes of a shadow ray that has been traced. `hit`: null where no light can pass.
+__device__ __forceinline__ void end_shadow(const DevicePicture& p, const WavePool& pool,
+                                           uint32_t slot, bool found, const RayHit* hit) {
   const SceneView& scene = p.scene;
-  const bool passes = found && scene.lets_light_through() &&
-                      scene.materials[scene.instances[hit.instance].material].transparent;
+  const bool passes = found && hit != nullptr &&
+                      scene.materials[scene.instances[hit->instance].material].transparent;
   if (scene.lets_light_through()) pool.in_shadow[slot] = passes ? 1 : 0;
   if (passes) {
-    pool.shadow_hit.store(slot, hit);
-    meet_surface(p, pool, slot, true, hit.instance);
+    pool.shadow_hit.store(slot, *hit);
+    meet_surface(p, pool, slot, true, hit->instance);
   } else if (!found && scene.has_media()) {
     pool.lit[append(&pool.counts->lit)] = slot;
   } else if (!found) {
     const Vec3f arriving = pool.shadow.load(slot).arriving;
-    constexpr uint32_t kRadiance = offsetof(paths::State<float>, result) / sizeof(float4);
-    static_assert(kRadiance * sizeof(float4) == offsetof(paths::State<float>, result));
+    static_assert(kResult % sizeof(float4) == 0);
+    constexpr uint32_t kRadiance = kResult / sizeof(float4);
     float4& radiance = pool.path.pieces[kRadiance * pool.path.slots + slot];
     float4 sum = radiance;
     sum.x += arriving.x;
@@ -95,11 +95,25 @@ __global__ void __launch_bounds__(kBlock, kTraceBlocks)
     if (is_shadow && i >= shadows) continue;
     const uint32_t slot = is_shadow ? pool.shadows[w.in()][i] : pool.paths[w.in()][i - first];
     if ((slot & kTraced) != 0) continue;
-    const Ray ray = is_shadow ? pool.shadow.load(slot).ray : pool.path.load(slot).ray;
-    RayHit hit;
-    bool found = p.tracer.trace(ray, is_shadow && !p.scene.lets_light_through(), &hit);
+    Ray ray;
+    bool any = false;
     if (is_shadow) {
-      end_shadow(p, pool, slot, found, hit);
+      const paths::ShadowWalk walk = pool.shadow.load(slot);
+      ray = walk.ray;
+      any = walk.passed == 0;  // behind a surface, others are met one by one
+    } else {
+      ray = pool.path.load(slot).ray;
+    }
+    RayHit hit;
+    bool found, again;
+    do {
+      bool clear;
+      found = p.tracer.trace(p.scene, ray, any, &hit, &clear);
+      again = clear && !found;
+      any = any && !again;
+    } while (again);
+    if (is_shadow) {
+      end_shadow(p, pool, slot, found, any ? nullptr : &hit);
       continue;
     }
     if (kCamera) found = clip_first(p, ray, found, &hit);

@@ -186,6 +186,7 @@ void BvhScene::place_instances(const RenderScene& scene) {
     out.shift = {shift[0], shift[1], shift[2]};
     out.motion = -1;
     out.key_step = 0;
+    out.is_clear = scene.lets_light_through(out.id) ? 1 : 0;
     if (in.moving && in.shape != ShapeType::kDeformable) {
       out.motion = static_cast<int32_t>(motion_.size());
       key_count_ = in.keys.size;
@@ -196,7 +197,7 @@ void BvhScene::place_instances(const RenderScene& scene) {
     out.root = mesh.root;
     if (mesh.deforms && scene.meshes()[in.mesh].key_count > 1) {
       key_count_ = scene.meshes()[in.mesh].key_count;
-      out.key_step = static_cast<uint32_t>(mesh.tree.order.size());
+      out.key_step = static_cast<uint32_t>(mesh.tree.order.size()) & 0x7FFFFFFFu;
     }
   }
 }

@@ -52,6 +52,10 @@ class RenderScene {
   /// Invisible instances are in the tables but never traced: fully transparent ones and those
   /// that are not shown.
   bool is_drawn(size_t instance) const { return drawn_[instance]; }
+  /// Whether light may pass straight through it.
+  bool lets_light_through(size_t instance) const {
+    return materials_.views()[instances_[instance].material].transparent;
+  }
   /// Changes whenever is_drawn() does for some instance.
   uint64_t drawn_version() const { return drawn_version_; }
   /// Neither moves nor may change its form: height fields may.

@@ -17,6 +17,9 @@ struct Zoo {
   explicit Zoo(int rings) {
     SceneBuilder& b = builder;
     const int material = b.add_diffuse({0.5f, 0.5f, 0.5f});
+    MaterialDescription half;
+    half.opacity = 0.5f;
+    const int sheer = b.add_material(half);
     const int ball = b.add_mesh(make_ball(rings, 0.2f));
     const int crate = b.add_mesh(make_box({0.3f, 0.5f, 0.2f}));
     const ShapeType shapes[] = {ShapeType::kBox,     ShapeType::kSphere,   ShapeType::kEllipsoid,
@@ -40,8 +43,8 @@ struct Zoo {
                                     p + Vec3f{uniform(-1, 1), uniform(-1, 1), uniform(-1, 1)})});
       }
       const int mesh = i % 8 == 6 ? ball : (i % 8 == 7 ? crate : -1);
-      b.add(shape, size, body == 0 ? rigid(axis, angle, p) : translation({0.1f, 0, 0}), material,
-            body, mesh);
+      b.add(shape, size, body == 0 ? rigid(axis, angle, p) : translation({0.1f, 0, 0}),
+            i % 5 == 0 ? sheer : material, body, mesh);
     }
     b.add(ShapeType::kPlane, {0, 0, 1}, translation({0, 0, -1}), material);
     DeformableDescription jelly;
@@ -66,12 +69,14 @@ class BothTrees {
     traced_.update(keys, zoo_.builder.frame);
     theirs = traced_.tracer();
     ours = traced_.own().tracer(traced_.scene());
+    view = traced_.scene().view_from({});
   }
   bool is_mesh(uint32_t instance) const {
     return gloam::is_mesh(traced_.scene().instances()[instance].shape);
   }
   CpuTracer theirs;
   BvhTracer ours;
+  SceneView view;
 
  private:
   Zoo zoo_;
@@ -114,6 +119,33 @@ TEST(Bvh, AShadowRayAndARayTogetherHitWhatTheyHitAlone) {
   }
   EXPECT_GT(blocked, 20'000);
   EXPECT_GT(hits, 20'000);
+}
+
+// Surfaces that may let light through neither hide others nor stay unnoticed.
+TEST(Bvh, ARayIsHiddenByWhatLetsNoLightThrough) {
+  const BothTrees both(20);
+  int hidden = 0, open = 0, missed = 0;
+  for (uint32_t i = 0; i < 50'000; ++i) {
+    const Ray ray = random_ray(i);
+    RayHit hit;
+    bool clear;
+    const bool blocks = both.ours.trace(both.view, ray, true, &hit, &clear);
+    bool opaque = false, any = false;
+    for (Ray rest = ray; !opaque && rest.tmax > 0 && both.ours.trace(rest, false, &hit);) {
+      any = true;
+      opaque = !both.view.materials[both.view.instances[hit.instance].material].transparent;
+      const float step = hit.t + 1e-4f;
+      rest.o = rest.o + rest.d * step;
+      rest.tmax -= step;
+    }
+    ASSERT_TRUE(blocks || clear || !any) << i;
+    missed += blocks != opaque;  // edges within a step, and behind clear solids that are scanned
+    hidden += blocks;
+    open += !blocks && any;
+  }
+  EXPECT_GT(hidden, 10'000);
+  EXPECT_GT(open, 1'000);
+  EXPECT_LT(missed, 100);
 }
 
 TEST(Bvh, ARayHitsTheSameByStepsAndByRuns) {

@@ -34,10 +34,22 @@ struct BvhTracer {
     float tmax = ray.tmax;
     const uint32_t row = scan(scanned, ray, true, any, &tmax);
     if (any && row != 0) return true;
-    BvhHit found;
-    const bool in_tree = traverse<!kPlainScenes, kPlainScenes>(
-        bvh, BvhSolids{scanned.instances}, ray.o, ray.d, ray.time, tmax, any, &found);
-    return any ? in_tree : nearest(ray, in_tree, found, row, tmax, hit);
+    return trace_tree(ray, any, row, tmax, hit, nullptr);
+  }
+  /// The same, but with `any` whether something hides what is behind it. Surfaces that may let
+  /// light through do not count; *clear tells whether some may be in the way.
+  GLOAM_HD bool trace(const SceneView& scene, const Ray& ray, bool any, RayHit* hit,
+                      bool* clear) const {
+    float tmax = ray.tmax;
+    uint32_t row = scan(scanned, ray, true, any, &tmax);
+    *clear = false;
+    if (any && row != 0) {
+      *clear = scene.materials[scanned.instances[row - 1].material].transparent;
+      if (!*clear) return true;
+      tmax = ray.tmax;
+      row = 0;
+    }
+    return trace_tree(ray, any, row, tmax, hit, clear);
   }
   /// The closest hit of the ray, and whether the shadow ray before it hits anything; a ray with
   /// tmax 0 is none.
@@ -61,6 +73,15 @@ struct BvhTracer {
   }
 
  private:
+  /// Continues trace() after the scan, which has found `row` at tmax.
+  GLOAM_HD bool trace_tree(const Ray& ray, bool any, uint32_t row, float tmax, RayHit* hit,
+                           bool* clear) const {
+    BvhHit found;
+    const bool in_tree =
+        traverse<!kPlainScenes, kPlainScenes>(bvh, BvhSolids{scanned.instances}, ray.o, ray.d,
+                                              ray.time, tmax, any, &found, nullptr, nullptr, clear);
+    return any ? in_tree : nearest(ray, in_tree, found, row, tmax, hit);
+  }
   /// Hit that the tree has found, or else the row of the scan.
   GLOAM_HD bool nearest(const Ray& ray, bool in_tree, const BvhHit& found, uint32_t row, float tmax,
                         RayHit* hit) const {
