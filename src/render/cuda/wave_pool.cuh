@@ -140,7 +140,7 @@ __device__ __forceinline__ void keep_lights(const SceneView& scene, const WavePo
 void launch_wave_surfaces(const DevicePicture& p, const WaveTurn& w, Stream stream);
 /// What paths without media have met: light, and the surfaces to be evaluated.
 void launch_wave_arrive(const DevicePicture& p, const WaveTurn& w, Stream stream);
-/// Light and directions at the surfaces of `sorted`.
+/// Light and directions at the same surfaces, in the order of `met`.
 void launch_wave_scatter(const DevicePicture& p, const WaveTurn& w, Stream stream);
 // The same where there are media, of shadow rays that have arrived, and in media.
 void launch_wave_arrive_through_media(const DevicePicture& p, const WaveTurn& w, Stream stream);

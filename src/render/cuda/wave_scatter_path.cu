@@ -7,12 +7,14 @@ namespace {
 
 constexpr int kScatterBlocks = 3;  ///< on a multiprocessor: 168 registers a thread
 
+/// In the order of `met`, which is almost that of the slots: whole cache lines of states count for
+/// more here than like materials side by side.
 __global__ void __launch_bounds__(kBlock, kScatterBlocks)
     scatter_kernel(const __grid_constant__ DevicePicture p, const __grid_constant__ WaveTurn w) {
   const WavePool& pool = w.pool;
   const uint32_t count = pool.counts->sorted;
   for (uint32_t i = blockIdx.x * kBlock + threadIdx.x; i < count; i += w.blocks * kBlock) {
-    const uint32_t item = pool.sorted[i], slot = item >> 1;
+    const uint32_t item = pool.met[i].item, slot = item >> 1;
     if ((item & 1u) != 0) continue;  // a shadow ray's
     paths::State<float> path = pool.path.load(slot);
     path.light_sampler.keep_in(pool.lights + slot);
