@@ -1,9 +1,10 @@
 // Milliseconds per picture on an NVIDIA card, beside the CPU.
 //   cuda_rate MODEL [--camera NAME]… [--size WxH] [--runs N] [--cpu] [--json]
-// MODEL: MJCF or scene file. For each camera: the direct tier with one sample and the exact
-// channels, and the path tier with 16 samples and depth 4 (`path 16`). Medians; `device`: of the
-// stages on the card; `upload`: of the moved scene's copy before them; `wall`: with the BVH's refit
-// and the picture's way back.
+// MODEL: MJCF or scene file. For each camera: the direct tier with one sample, and the path tier
+// with 16 samples and depth 4 (`path 16`), both tone mapped on the card (on the CPU: light), and
+// the direct tier with its light and exact channels (`channels`). Medians; `device`: of the stages
+// on the card; `upload`: of the moved scene's copy before them; `wall`: with the BVH's refit and
+// the picture's way back.
 
 #include <algorithm>
 #include <chrono>
@@ -92,9 +93,11 @@ Status run(const Arguments& a) {
   RenderSettings direct, path;
   direct.tier = RenderTier::kDirect;
   direct.spp = 1;
+  const RenderSettings channels = direct;
   path.spp = 16;
   path.max_depth = 4;
-  path.exact_channels = false;
+  path.exact_channels = direct.exact_channels = false;
+  path.finish.to_display = direct.finish.to_display = !a.cpu;
   for (size_t i = 0; i < description.cameras.size(); ++i) {
     const std::string& name = description.cameras[i].name;
     if (!a.cameras.empty() &&
@@ -111,7 +114,8 @@ Status run(const Arguments& a) {
     k.cy = 0.5 * a.height;
     k.width = a.width;
     k.height = a.height;
-    for (const Work& work : {Work{"direct", direct}, Work{"path 16", path}}) {
+    for (const Work& work :
+         {Work{"direct", direct}, Work{"channels", channels}, Work{"path 16", path}}) {
       const Times t = measure(renderer.get(), view, work.settings, poses, a.runs);
       const double device = median(t.device), upload = median(t.upload), wall = median(t.wall);
       const double rays = t.rays / (1e6 * (a.cpu ? wall : device));

@@ -1,7 +1,8 @@
 // A LiDAR of 64 x 1024 beams near a robot against mj_multiRay with the same rays on the same model:
 // CPU time, one thread each, medians of alternating runs; also with two threads, wall time. Ours
 // moves sensor and bodies during the scan and tells intensities; theirs is of one instant.
-//   lidar_rate SCENE.toml [--runs N] [--footprint RAYS] [--json]
+//   lidar_rate SCENE.toml [--runs N] [--footprint RAYS] [--card] [--json]
+// With --card instead: wall time of a scan on an NVIDIA GPU, with its points in the host's memory.
 // The scene has a [[lidar]] named "lidar".
 
 #include <fmt/format.h>
@@ -41,7 +42,7 @@ double median(std::vector<double> v) {
 struct Arguments {
   std::string scene;
   int runs = 11, footprint = 1;
-  bool json = false;
+  bool card = false, json = false;
 };
 
 /// The same rays for MuJoCo.
@@ -63,7 +64,8 @@ Status run(const Arguments& arguments) {
   GLOAM_TRY(const World world, World::compile(scene));
   const auto compiled = world.compiled();
   GLOAM_TRY(const RenderDescription description, describe_for_rendering(*compiled));
-  GLOAM_TRY(const auto renderer, make_cpu_renderer(description));
+  GLOAM_TRY(const auto renderer,
+            arguments.card ? make_cuda_renderer(description) : make_cpu_renderer(description));
   GLOAM_TRY(const auto lidars, describe_lidars(*compiled));
   if (lidars.empty()) return Error{ErrorKind::kUsage, "the scene has no [[lidar]]"};
   GLOAM_TRY(const auto sensor, LidarSensor::create(description, lidars[0], 1));
@@ -88,6 +90,20 @@ Status run(const Arguments& arguments) {
   RenderTurns turns;
   std::shared_ptr<const LidarScan> scan;
   const auto ours = [&] { scan = sensor->scan(*renderer, turns, keys, 0); };
+  if (arguments.card) {
+    std::vector<double> card_ms;
+    for (int i = -2; i < arguments.runs; ++i) {
+      const double start = wall_ms();
+      ours();
+      if (i >= 0) card_ms.push_back(wall_ms() - start);
+    }
+    fmt::print(
+        fmt::runtime(arguments.json
+                         ? "{{\"name\": \"lidar_rate\", \"card_ms\": {:.3f}, \"points\": {}}}\n"
+                         : "{:.3f} ms on the GPU, {} points\n"),
+        median(card_ms), scan->size());
+    return {};
+  }
   MultiRay theirs;
   const std::vector<LidarFiring> firings =
       lidar_pattern(sensor->model().pattern).fire(sensor->model(), 0);
@@ -156,6 +172,7 @@ int main(int argc, char** argv) {
   gloam::Arguments arguments;
   gloam::CommandLine line(argc, argv);
   arguments.json = line.flag("--json");
+  arguments.card = line.flag("--card");
   line.value("--runs", &arguments.runs);
   line.value("--footprint", &arguments.footprint);
   arguments.footprint = std::min(arguments.footprint, 32);

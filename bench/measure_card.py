@@ -3,12 +3,14 @@ import json
 import os
 
 import go1_room
-from measure import BIN, CACHE, at_least, at_most, robot, run, run_json
+from measure import BIN, CACHE, ROOT, at_least, at_most, robot, run, run_json
 from measure_realistic import SCENES
 
 # 1280x720 in the same room, per work and camera: the bar, and what the fastest peer on an H200 took [ms].
 BARS = {"direct": ("1280x720 primary + shadows", {"far": (0.5, 0.79), "close": (0.5, 1.31)}),
         "path 16": ("1280x720, 16 samples, depth 4", {"far": (20, 85.4), "close": (25, 111)})}
+# The same with the update of the scene before and the RGB image in the host's memory after it [ms].
+WALLS = {"direct": {"far": 0.8, "close": 1.3}}
 WHERE = {"far": "Go1 in a room", "close": "close to Go1"}
 REALISTIC = {"house": 150, "demo_room": 60, "warehouse": 150}  # the same paths in scenes with materials, glass and many lamps [ms]
 
@@ -19,12 +21,17 @@ def card_rate(quick):
     cameras = [word for camera in WHERE for word in ("--camera", camera)]
     text = run(BIN / "bench_cuda_rate", room, *cameras, "--runs", 5 if quick else 40, "--json")
     for figures in map(json.loads, text.strip().splitlines()):
+        if figures["work"] not in BARS:
+            continue
         what, bars = BARS[figures["work"]]
         camera = figures["camera"]
         bar, peer = bars[camera]
         yield at_most(f"{what}, {WHERE[camera]} [ms]", figures["device_ms"], bar,
                       f"{figures['grays_per_s']:.1f} Grays/s; copy of the moved scene {figures['upload_ms']:.3f} ms, in all with the "
                       f"picture's way back {figures['wall_ms']:.1f} ms; best peer {peer} ms")
+        if walls := WALLS.get(figures["work"]):
+            yield at_most(f"the same, wall time with the RGB image in host memory, {WHERE[camera]} [ms]", figures["wall_ms"], walls[camera],
+                          "update of the scene, ambient light, tone map and copy among it")
 
 
 def realistic_card_rate(quick):
@@ -34,6 +41,12 @@ def realistic_card_rate(quick):
         figures = next(row for row in map(json.loads, text.strip().splitlines()) if row["work"] == "path 16")
         yield at_most(f"1280x720, 16 samples, depth 4, {scene} [ms]", figures["device_ms"], bar,
                       f"{figures['grays_per_s']:.2f} Grays/s; in all {figures['wall_ms']:.1f} ms")
+
+
+def lidar_on_card(quick):
+    """a LiDAR's scans of a house on the card"""
+    figures = run_json(BIN / "bench_lidar_rate", ROOT / "bench" / "lidar_house.toml", "--card", "--runs", 3 if quick else 21, "--json")
+    yield at_most("LiDAR of 64 x 1024 beams in the house, points in host memory [ms]", figures["card_ms"], 2, f"{figures['points']} points")
 
 
 def gas_on_card(quick):
@@ -47,4 +60,4 @@ def gas_on_card(quick):
     yield at_most("the same: L2 norm of the divergence after / before, worst step", card["worst_divergence_ratio"], 1e-4, "something moves")
 
 
-ALL = {card_rate: 60, realistic_card_rate: 60, gas_on_card: 40}
+ALL = {card_rate: 60, lidar_on_card: 20, realistic_card_rate: 60, gas_on_card: 40}

@@ -41,6 +41,7 @@ struct Times {
   double renderer = 0;                        ///< from there until the renderer is ready
   double first = 0;                           ///< the same, and the first image
   std::vector<double> images, physics, rays;  ///< after the first image
+  std::vector<double> device, upload;         ///< of these images on the card, and the scene's copy
 };
 
 /// Milliseconds since the last call.
@@ -109,6 +110,8 @@ Result<Times> measure(const Options& options) {
     } else {
       times.images.push_back(image);
       times.rays.push_back(static_cast<double>(sensor->stats().rays));
+      times.device.push_back(1e3 * sensor->stats().device_seconds);
+      times.upload.push_back(1e3 * sensor->stats().upload_seconds);
     }
     GLOAM_TRY_STATUS(write(options, i, *frame));
   }
@@ -135,18 +138,20 @@ Status run(const Options& options) {
       "{{\"scene\": \"{}\", \"tier\": \"{}\", \"width\": {}, \"height\": {}, \"frames\": {}, "
       "\"image_ms\": {:.3f}, \"image_p95_ms\": {:.3f}, \"first_ms\": {:.3f}, "
       "\"renderer_ms\": {:.3f}, \"load_ms\": {:.3f}, \"physics_ms\": {:.3f}, "
-      "\"real_time_factor\": {:.4f}, \"rays\": {:.0f}}}\n";
+      "\"real_time_factor\": {:.4f}, \"rays\": {:.0f}, \"device_ms\": {:.3f}, "
+      "\"upload_ms\": {:.3f}}}\n";
   constexpr const char* kText =
       "{}, {} tier, {}x{}, {} images\n"
       "  image    {:8.1f} ms median, {:.1f} ms 95th percentile\n"
       "  first    {:8.1f} ms, of which {:.1f} ms until the renderer is ready\n"
       "  load     {:8.1f} ms before\n"
       "  physics  {:8.1f} ms per image, {:.2f} x real time\n"
-      "  rays     {:8.0f} per image\n";
+      "  rays     {:8.0f} per image\n"
+      "  card     {:8.3f} ms, copy of the scene before {:.3f} ms\n";
   fmt::print(fmt::runtime(options.json ? kJson : kText), name, options.tier, options.width,
              options.height, options.frames, median(times.images), percentile_95(times.images),
              times.first, times.renderer, times.load, physics, 1e3 / kRate / physics,
-             median(times.rays));
+             median(times.rays), median(times.device), median(times.upload));
   return {};
 }
 

@@ -12,12 +12,6 @@ namespace gloam {
 
 class RenderTurns;
 
-struct LidarBeam {
-  Vec3f d;          ///< unit, in the sensor's frame L: x ahead, y to the left, z up
-  float time = 0;   ///< 0 … 1 between the keys that the renderer was updated to
-  uint32_t id = 0;  ///< of the beam in its scan, for its draws
-};
-
 /// Beams that follow each other are traced together: neighbours in space should be neighbours here.
 struct LidarView {
   std::span<const LidarMotion> motions;  ///< between the renderer's keys, one less than they

@@ -56,9 +56,12 @@ void resize_film(const CameraView& view, const RenderSettings& settings, Film* f
   const size_t n = film->pixel_count(), exact = settings.exact_channels ? n : 0;
   const size_t details = settings.exact_details ? exact : 0;
   const size_t light = settings.spp > 0 || settings.tier == RenderTier::kInteractive ? n : 0;
-  film->radiance.resize(light);
-  film->albedo.resize(light);
-  film->normal.resize(light);
+  const PictureFinish& finish = settings.finish;
+  const size_t guides = finish.denoise || finish.to_display ? 0 : light;
+  film->rgb.resize(finish.to_display ? 3 * light : 0);
+  film->radiance.resize(finish.to_display ? 0 : light);
+  film->albedo.resize(guides);
+  film->normal.resize(guides);
   film->variance.resize(settings.variance ? light : 0);
   film->sample_count.resize(settings.error > 0 ? n : 0);
   visit_places([&](auto& plane) { plane.resize(exact); }, *film);

@@ -1,18 +1,20 @@
 #pragma once
 // The renderer's face: one World's visuals, moved by PoseFrames, seen by any number of cameras.
 
+#include <atomic>
 #include <cstdint>
 #include <functional>
+#include <future>
 #include <memory>
 #include <span>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "gloam/result.h"
 #include "instant/pose_frame.h"
 #include "render/film/film.h"
 #include "render/kernel/camera/camera.h"
+#include "render/kernel/film/tone.h"
 #include "world/render_description.h"
 
 namespace gloam {
@@ -50,6 +52,14 @@ class ViewHistory {
   virtual ~ViewHistory() = default;
 };
 
+/// What a renderer makes of a picture's light before it hands it over: the same as a Denoiser and
+/// tone_map() do, without the way through the host's memory.
+struct PictureFinish {
+  bool denoise = false;     ///< Film::radiance is without noise, albedo and normal stay empty
+  bool to_display = false;  ///< Film::rgb instead of Film::radiance
+  ToneMapSettings tone{};   ///< of it
+};
+
 struct RenderSettings {
   RenderTier tier = RenderTier::kPath;
   int spp = 4;           ///< samples per pixel of this call; with `error` at most
@@ -70,7 +80,8 @@ struct RenderSettings {
   /// value (render/cpu/path/adaptive_tile.h), 0 … 1; 0 = `spp` samples in every pixel. Then
   /// first_sample is 0 and spp at least kLeastAdaptiveSpp.
   float error = 0;
-  float error_floor = 0;  ///< [cd/m²] darker pixels count as of this value
+  PictureFinish finish{};  ///< only where Renderer::finishes() says so
+  float error_floor = 0;   ///< [cd/m²] darker pixels count as of this value
   /// Told how much of the picture is done, 0..1, about ten times a second, from the threads that
   /// render but never by two at once. Returns false to end the render: the film then is unfinished.
   std::function<bool(double done)> progress = {};
@@ -108,8 +119,16 @@ class Renderer {
     update(std::span(keys, &open == &close ? 1 : 2), previous);
   }
   /// Fills `film` (resized to the view's resolution).
-  virtual RenderStats render(const CameraView& view, const RenderSettings& settings,
-                             Film* film) = 0;
+  RenderStats render(const CameraView& view, const RenderSettings& settings, Film* film) {
+    return begin(view, settings, film).get();
+  }
+  /// Begins to fill `film`, which must live until the result has been taken. A card goes on by
+  /// itself: others may update the renderer and begin pictures before this one is finished. The
+  /// result may be taken on any thread, and only while the renderer lives.
+  virtual std::future<RenderStats> begin(const CameraView& view, const RenderSettings& settings,
+                                         Film* film) = 0;
+  /// Whether render() carries out `settings.finish`; a card does, save for adaptive samples.
+  virtual bool finishes(const RenderSettings& settings) = 0;
   /// Draws what is strewn through the air over a finished picture of the view [cd/m²], whose film
   /// has the exact channel `distance`.
   virtual void draw_particles(const CameraView& view, const Film& film,
@@ -125,10 +144,10 @@ class Renderer {
   /// For RenderSettings::history; of this renderer alone.
   virtual std::unique_ptr<ViewHistory> make_history() const = 0;
   /// True at the first call alone: cameras that share a renderer warn once of its pictures' noise.
-  bool first_to_warn() { return !std::exchange(has_warned_, true); }
+  bool first_to_warn() { return !has_warned_.exchange(true); }
 
  private:
-  bool has_warned_ = false;
+  std::atomic<bool> has_warned_ = false;
 };
 
 /// "Embree 3.13.5"

@@ -18,6 +18,7 @@
 #include "render/cpu/path/object_cover.h"
 #include "render/cpu/tracer/traced_scene.h"
 #include "render/cuda/cuda_stages.h"
+#include "render/film/denoise.h"
 #include "render/picture.h"
 
 namespace gloam {
@@ -46,8 +47,9 @@ class StagedRenderer final : public Renderer {
     previous_ = &previous;
   }
 
-  RenderStats render(const CameraView& view, const RenderSettings& settings, Film* film) override {
-    GLOAM_CHECK(updated_, "update() must be called before render()");
+  std::future<RenderStats> begin(const CameraView& view, const RenderSettings& settings,
+                                 Film* film) override {
+    GLOAM_CHECK(updated_, "update() must be called before begin()");
     const auto start = std::chrono::steady_clock::now();
     resize_film(view, settings, film);
     film->cover.clear();
@@ -70,11 +72,18 @@ class StagedRenderer final : public Renderer {
       film->cover = measure_cover(job.scene, job.tracer, job.camera, job.has_motion, film->width,
                                   film->height, objects_);
     }
-    RenderStats total =
-        settings.tier == RenderTier::kInteractive ? render_interactive(job) : render_exact(job);
-    total.trace_seconds =
-        std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    return total;
+    std::future<RenderStats> result =
+        settings.tier == RenderTier::kInteractive ? begin_interactive(job) : begin_exact(job);
+    return std::async(std::launch::deferred, [start, result = std::move(result)]() mutable {
+      RenderStats total = result.get();
+      total.trace_seconds =
+          std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+      return total;
+    });
+  }
+
+  bool finishes(const RenderSettings& settings) override {
+    return cuda_ != nullptr && !(settings.error > 0) && cuda_->finishes(settings.finish);
   }
 
   void draw_particles(const CameraView& view, const Film& film,
@@ -110,6 +119,10 @@ class StagedRenderer final : public Renderer {
   void scan(const LidarView& view, std::span<LidarReturn> returns) override {
     GLOAM_CHECK(updated_, "update() must be called before scan()");
     SceneView seen = scene().view_from(view.motions.front().X_WL);
+    if (cuda_ != nullptr) {
+      const Job job{.scene = seen};
+      return cuda_->scan(on_cuda(job), view, returns);
+    }
     CpuTracer tracer = traced_.tracer();
     RenderSlices slices(view.turns, [&, keys = keys_, previous = previous_] {
       update(keys, *previous);
@@ -120,6 +133,7 @@ class StagedRenderer final : public Renderer {
   }
 
   std::unique_ptr<ViewHistory> make_history() const override {
+    if (cuda_ != nullptr) return cuda_->make_history();
     return std::make_unique<InteractiveHistory>();
   }
 
@@ -136,19 +150,23 @@ class StagedRenderer final : public Renderer {
     // Measurements before the picture, and the interactive tier, know no times: they see mean
     // lamps.
     picture->levels = std::exchange(job.scene.light_levels, {});
-    job.tracer = traced_.tracer();
+    if (!is_on_card(job) || job.settings.cover) job.tracer = traced_.tracer();
     picture->clip = clip_of(view, job.scene, job.camera);
     if (!picture->clip.view.is_idle()) job.tracer.clip = &picture->clip;
     const bool few = job.scene.lights.size <= kMaxWeighedLights;
-    if (job.settings.tier == RenderTier::kPath && few) job.scene.selects_by_tree = false;
+    if (traces_paths(job) && few) job.scene.selects_by_tree = false;
   }
 
   // Decides how the picture is made, and measures what is needed before it.
   void plan(Picture* picture) {
     Job& job = picture->job;
     const RenderSettings& settings = job.settings;
+    if (settings.tier == RenderTier::kInteractive && is_on_card(job)) {
+      job.camera.aperture = {};  // its pictures are sharp
+      job.camera.shutter.length = 0;
+    }
     // The interactive tier's cache keeps the light of scenes with a tree by itself.
-    picture->is_guided = settings.tier == RenderTier::kPath ||
+    picture->is_guided = traces_paths(job) ||
                          (settings.tier == RenderTier::kInteractive && !job.scene.selects_by_tree);
     if (picture->is_guided && !has_guide_) {
       guide_.build(job.scene, traced_.static_tracer(), described_);
@@ -162,13 +180,10 @@ class StagedRenderer final : public Renderer {
         scene().has_flicker() && (moves || shutter.row > 0 || shutter.open + shutter.length < 1);
     job.has_motion = moves || picture->flickers;
     job.path = {settings.max_depth, settings.roulette_depth};
-    if (settings.tier == RenderTier::kDirect && settings.spp > 0) {
-      const Film& film = *job.film;
-      picture->ambient =
-          is_on_card(job)
-              ? mean_ambient(cuda_->trace_ambient(on_cuda(job), film.width, film.height))
-              : measure_ambient(job.scene, job.tracer, job.camera, film.width, film.height,
-                                settings.max_depth);
+    const Film& film = *job.film;
+    if (has_ambient(settings) && !is_on_card(job)) {
+      picture->ambient = measure_ambient(job.scene, job.tracer, job.camera, film.width, film.height,
+                                         settings.max_depth);
     }
   }
 
@@ -177,26 +192,48 @@ class StagedRenderer final : public Renderer {
     Job& job = picture->job;
     const RenderTier tier = job.settings.tier;
     if (picture->is_guided) job.scene.guide = guide_.view();
-    const bool has_ambient = tier == RenderTier::kDirect && job.settings.spp > 0;
-    if (has_ambient) job.scene.ambient = picture->ambient;
+    if (has_ambient(job.settings)) job.scene.ambient = &picture->ambient;
     // The ambient light, or the interactive tier's cache, stands for the sky's light: none is
     // sampled.
-    if (has_ambient || tier == RenderTier::kInteractive) job.scene.environment.row_cdf = {};
+    const bool has_cache = tier == RenderTier::kInteractive && !is_on_card(job);
+    if (has_ambient(job.settings) || has_cache) job.scene.environment.row_cdf = {};
     if (picture->flickers && tier != RenderTier::kInteractive)
       job.scene.light_levels = picture->levels;
   }
 
-  RenderStats render_interactive(const Job& job) {
+  static std::future<RenderStats> ready(const RenderStats& stats) {
+    std::promise<RenderStats> promise;
+    promise.set_value(stats);
+    return promise.get_future();
+  }
+
+  std::future<RenderStats> begin_interactive(const Job& job) {
+    if (is_on_card(job)) return begin_interactive_on_card(job);
     InteractiveHistory own;
     auto* history = static_cast<InteractiveHistory*>(job.settings.history);
     const RenderStats stats = (history != nullptr ? *history : own).render(job);
     CpuStages cpu;
     if (job.settings.exact_channels) cpu.render_exact_channels(job);
-    return stats;
+    return ready(stats);
+  }
+
+  std::future<RenderStats> begin_interactive_on_card(const Job& job) {
+    constexpr int kGuideSamples = 4;
+    std::future<RenderStats> result = cuda_->begin(on_cuda(job, kGuideSamples), job.film);
+    if (job.settings.finish.denoise) return result;
+    return std::async(std::launch::deferred,
+                      [result = std::move(result), film = job.film]() mutable {
+                        const RenderStats stats = result.get();
+                        std::vector<Vec3f> clean;
+                        const Status status = make_edge_denoiser()->denoise(*film, &clean);
+                        GLOAM_CHECK(status.ok(), "the edge filter takes any film");
+                        film->radiance.swap(clean);
+                        return stats;
+                      });
   }
 
   // The path tier and the direct tier.
-  RenderStats render_exact(Job& job) {
+  std::future<RenderStats> begin_exact(Job& job) {
     const RenderSettings& settings = job.settings;
     const bool adaptive = settings.error > 0;
     job.centered = settings.tier == RenderTier::kDirect && settings.spp == 1 &&
@@ -210,26 +247,47 @@ class StagedRenderer final : public Renderer {
         adaptive ? settings.spp / 2 : int64_t{settings.first_sample} + settings.spp;
     while ((int64_t{1} << job.log2_samples) < samples) ++job.log2_samples;
     job.slices->pause();
-    CpuStages cpu;
-    RenderStats total = is_on_card(job) ? cuda_->render(on_cuda(job), job.film) : cpu.render(job);
     // Blurred pictures have blurred guides: those of the samples.
     const bool moves = !job.camera.pose.keys.empty() || scene().has_motion();
     const bool sharp =
         !(job.camera.aperture.radius > 0) && !(moves && job.camera.shutter.length > 0);
-    if (total.finished && settings.spp > 0 && settings.spp < settings.guide_samples && sharp) {
+    const bool refines = settings.spp > 0 && settings.spp < settings.guide_samples && sharp;
+    if (is_on_card(job))
+      return cuda_->begin(on_cuda(job, refines ? settings.guide_samples : 0), job.film);
+    CpuStages cpu;
+    RenderStats total = cpu.render(job);
+    if (total.finished && refines) {
       GLOAM_CHECK(settings.exact_channels && settings.exact_details,
                   "guide samples require the exact channels");
       total.rays += refine_guides({job.scene, job.tracer, job.camera, job.has_motion},
                                   settings.guide_samples, job.slices, job.film);
     }
-    return total;
+    return ready(total);
   }
 
   bool is_on_card(const Job& job) const { return cuda_ != nullptr && !(job.settings.error > 0); }
-  CudaJob on_cuda(const Job& job) const {
+  static bool has_ambient(const RenderSettings& settings) {
+    return settings.tier == RenderTier::kDirect && settings.spp > 0;
+  }
+  /// Whether light is that of whole paths: on a card the interactive tier takes a few.
+  bool traces_paths(const Job& job) const {
+    return job.settings.tier == RenderTier::kPath ||
+           (job.settings.tier == RenderTier::kInteractive && is_on_card(job));
+  }
+  CudaJob on_cuda(const Job& job, int guide_samples = 0) const {
     const ViewClip clip = job.tracer.clip != nullptr ? job.tracer.clip->view : ViewClip();
-    return {scene(),      traced_.own(), job.scene,        job.camera,     clip,
-            job.settings, job.path,      job.log2_samples, job.has_motion, job.centered};
+    return {scene(),
+            traced_.own(),
+            job.scene,
+            job.camera,
+            clip,
+            job.settings,
+            job.path,
+            job.log2_samples,
+            job.has_motion,
+            job.centered,
+            has_ambient(job.settings),
+            guide_samples};
   }
 
   TracedScene traced_;

@@ -4,10 +4,14 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cstring>
+#include <mutex>
 
-#include "base/parallel.h"
+#include "render/cuda/cuda_history.h"
+#include "render/cuda/device_film.h"
+#include "render/cuda/device_lidar.h"
 #include "render/cuda/device_scene.h"
+#include "render/cuda/finisher.h"
+#include "render/cuda/stream.h"
 #include "render/cuda/wavefront.h"
 
 namespace gloam {
@@ -19,112 +23,86 @@ using cuda::check;
 /// pictures do not depend on whether somebody asks.
 constexpr int kSamplesOfLaunch = 64;
 
-class Event {
- public:
-  Event() { check(cudaEventCreate(&event_), "cannot create a CUDA event"); }
-  Event(const Event&) = delete;
-  Event& operator=(const Event&) = delete;
-  ~Event() { cudaEventDestroy(event_); }
-  void record(cuda::Stream stream) {
-    check(cudaEventRecord(event_, stream), "a CUDA event failed");
-  }
-  /// [s]; both have happened.
-  double since(const Event& start) const {
-    float ms = 0;
-    check(cudaEventElapsedTime(&ms, start.event_, event_), "a CUDA event failed");
-    return 1e-3 * ms;
-  }
+/// A picture that is being made: what the host writes before, and reads after, the card's work.
+struct Flight {
+  cuda::PinnedBuffer scene;
+  cuda::DeviceFilmStore film;
+  cuda::Event start, uploaded, finished, downloaded;
+};
 
- private:
-  cudaEvent_t event_ = nullptr;
+/// The samples of one picture's pixels.
+struct Sampling {
+  int first = 0, count = 0;
 };
 
 class Card final : public CudaStages {
  public:
-  explicit Card(std::string name) : name_(std::move(name)) {
-    check(cudaStreamCreate(&stream_), "cannot create a CUDA stream");
-  }
-  ~Card() override {
-    cudaStreamSynchronize(stream_);
-    cudaStreamDestroy(stream_);
-  }
+  explicit Card(std::string name) : name_(std::move(name)) {}
+  ~Card() override { cudaStreamSynchronize(stream_.get()); }
 
   std::string device_name() const override { return name_; }
+  std::unique_ptr<ViewHistory> make_history() const override {
+    return std::make_unique<cuda::CudaHistory>();
+  }
+  bool finishes(const PictureFinish& finish) override { return finisher_.can(finish); }
 
   void update(const RenderScene& scene) override {
     if (!scene.rebuilt_meshes().empty()) scene_.forget();
   }
 
-  std::vector<AmbientPath> trace_ambient(const CudaJob& job, int width, int height) override {
-    DevicePicture picture = make_picture(job, width, height);
-    scene_.upload(job, stream_, &picture);
-    std::vector<AmbientPath> paths(size_t{1} << kLog2AmbientPaths);
-    auto* device = ambient_.reserve_of<AmbientPath>(paths.size());
-    cuda::launch_ambient(picture, device, stream_);
-    check(cudaGetLastError(), "cannot launch a CUDA kernel");
-    check(cudaMemcpyAsync(paths.data(), device, paths.size() * sizeof(AmbientPath),
-                          cudaMemcpyDeviceToHost, stream_),
-          "cannot copy the ambient light from the GPU");
-    finish();
-    return paths;
+  void scan(const CudaJob& job, const LidarView& view, std::span<LidarReturn> returns) override {
+    DevicePicture scene;
+    scene_.upload(job, stream_.get(), &scan_scene_, &scene);
+    lidar_.scan(scene.scene, scene.tracer, view, stream_.get(), returns);
   }
 
-  RenderStats render(const CudaJob& job, Film* film) override {
+  std::future<RenderStats> begin(const CudaJob& job, Film* film) override {
     const RenderSettings& settings = job.settings;
+    const bool interactive = settings.tier == RenderTier::kInteractive;
+    cuda::CudaHistory own;
+    auto* history = static_cast<cuda::CudaHistory*>(settings.history);
+    if (history == nullptr) history = &own;
     DevicePicture picture = make_picture(job, film->width, film->height);
-    const bool plain = job.view.is_plain() && job.camera.is_plain() && !job.has_motion;
-    place_film(*film, &picture.film);
-    start_.record(stream_);
-    scene_.upload(job, stream_, &picture);
-    uploaded_.record(stream_);
+    Sampling sampling{settings.first_sample, settings.spp};
+    if (interactive) {
+      const auto s = history->begin(job.camera, film->width, film->height);
+      sampling = {s.first, s.count};
+      picture.frame = s.frame;
+      picture.log2_samples = s.log2_samples;
+    }
+    std::unique_ptr<Flight> flight = take_flight();
+    picture.film = flight->film.place(*film, needs_of(job));
+    flight->start.record(stream_.get());
+    scene_.upload(job, stream_.get(), &flight->scene, &picture);
+    flight->uploaded.record(stream_.get());
     // The channels need no zeros: the launches write every pixel of each.
-    check(cudaMemsetAsync(picture.film.rays, 0, sizeof *picture.film.rays, stream_),
+    check(cudaMemsetAsync(picture.film.rays, 0, sizeof *picture.film.rays, stream_.get()),
           "cannot set GPU memory");
+    if (job.measures_ambient) measure_ambient(&picture);
     RenderStats stats;
-    const auto begin = std::chrono::steady_clock::now();
-    double told = 0;
-    for (int done = 0; done < settings.spp && stats.finished; done += kSamplesOfLaunch) {
-      picture.done = done;
-      picture.first_sample = settings.first_sample + done;
-      picture.samples = std::min(kSamplesOfLaunch, settings.spp - done);
-      picture.split = picture.samples >= 4 ? 4 : (picture.samples >= 2 ? 2 : 1);
-      picture.last = done + picture.samples == settings.spp;
-      if (settings.tier == RenderTier::kPath) {
-        if (plain) {
-          cuda::launch_plain_path(picture, stream_);
-        } else {
-          wavefront_.render(picture, stream_);
-        }
-      } else {
-        (plain ? cuda::launch_plain_direct : cuda::launch_full_direct)(picture, stream_);
-      }
-      check(cudaGetLastError(), "cannot launch a CUDA kernel");
-      if (!settings.progress || picture.last) continue;
-      finish();
-      const double now =
-          std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-      if (now < told + 0.1) continue;
-      told = now;
-      stats.finished =
-          settings.progress(static_cast<double>(done + picture.samples) / settings.spp);
-    }
-    if (settings.exact_channels) {
-      const bool centered = job.centered && settings.spp == 1;
-      if (!centered || job.view.has_transparent) {
-        (plain ? cuda::launch_plain_channels : cuda::launch_full_channels)(picture, centered,
-                                                                           stream_);
-        check(cudaGetLastError(), "cannot launch a CUDA kernel");
-      }
-    }
-    finished_.record(stream_);
-    download(film, picture, &stats);
-    stats.paths = film->pixel_count() * static_cast<uint64_t>(std::max(settings.spp, 0));
-    stats.device_seconds = finished_.since(uploaded_);
-    stats.upload_seconds = uploaded_.since(start_);
-    return stats;
+    take_samples(job, sampling, &picture, &stats);
+    describe(job, &picture);
+    const PictureFinish& finish = settings.finish;
+    // A history's noise goes along with what moves, from pixel to pixel, and so looks like texture
+    // to a denoiser: that comes first.
+    if (finish.denoise) finisher_.denoise(film->width, film->height, &picture.film);
+    if (interactive) history->add(picture.camera, &picture.film, stream_.get());
+    if (finish.to_display) finisher_.show(finish.tone, film->width, film->height, &picture.film);
+    flight->finished.record(stream_.get());
+    flight->film.begin_download(picture.film, film, stream_.get());
+    flight->downloaded.record(stream_.get());
+    stats.paths = film->pixel_count() * static_cast<uint64_t>(std::max(sampling.count, 0));
+    return std::async(std::launch::deferred,
+                      [this, stats, film, flight = std::move(flight)]() mutable {
+                        return land(std::move(flight), film, stats);
+                      });
   }
 
  private:
+  static bool is_plain(const CudaJob& job) {
+    return job.view.is_plain() && job.camera.is_plain() && !job.has_motion;
+  }
+
   static DevicePicture make_picture(const CudaJob& job, int width, int height) {
     DevicePicture picture;
     picture.path = job.path;
@@ -138,64 +116,98 @@ class Card final : public CudaStages {
     return picture;
   }
 
-  /// Calls visit(channel of the film, pointer in DeviceFilm) for each.
-  template <class Film_, class Visit>
-  static void each_channel(Film_& film, DeviceFilm* device, const Visit& visit) {
-    visit(film.radiance, &device->radiance);
-    visit(film.variance, &device->squares);
-    visit(film.albedo, &device->albedo);
-    visit(film.normal, &device->normal);
-    const auto exact = [&](auto& plane, auto& pointer) { visit(plane, &pointer); };
-    visit_places(exact, film, *device);
-    visit_details(exact, film, *device);
+  static cuda::FilmNeeds needs_of(const CudaJob& job) {
+    const RenderSettings& settings = job.settings;
+    const bool described = job.guide_samples > 0 || settings.tier == RenderTier::kInteractive;
+    return {.light = settings.spp > 0, .places = described, .details = described};
   }
 
-  void place_film(const Film& film, DeviceFilm* device) {
-    size_t bytes = sizeof(unsigned long long);
-    each_channel(film, device, [&](const auto& channel, auto*) {
-      bytes += (channel.size() * sizeof(channel[0]) + 255) / 256 * 256;
-    });
-    char* at = static_cast<char*>(film_.reserve(bytes));
-    film_bytes_ = bytes;
-    each_channel(film, device, [&](const auto& channel, auto* pointer) {
-      if (channel.empty()) return;
-      *pointer = reinterpret_cast<std::decay_t<decltype(*pointer)>>(at);
-      at += (channel.size() * sizeof(channel[0]) + 255) / 256 * 256;
-    });
-    device->rays = reinterpret_cast<unsigned long long*>(at);
+  void measure_ambient(DevicePicture* picture) {
+    auto* paths = ambient_paths_.reserve_of<AmbientPath>(size_t{1} << kLog2AmbientPaths);
+    auto* ambient = ambient_.reserve_of<AmbientCube>(1);
+    cuda::launch_ambient(*picture, paths, ambient, stream_.get());
+    check(cudaGetLastError(), "cannot launch a CUDA kernel");
+    picture->scene.ambient = ambient;
   }
 
-  void download(Film* film, DevicePicture& picture, RenderStats* stats) {
-    char* host = staging_.reserve(film_bytes_);
-    check(cudaMemcpyAsync(host, film_.data(), film_bytes_, cudaMemcpyDeviceToHost, stream_),
-          "cannot copy the image from the GPU");
-    finish();
-    const char* base = static_cast<const char*>(film_.data());
-    each_channel(*film, &picture.film, [&](auto& channel, auto* pointer) {
-      if (channel.empty()) return;
-      const size_t at = static_cast<size_t>(reinterpret_cast<const char*>(*pointer) - base);
-      char* const to = reinterpret_cast<char*>(channel.data());
-      parallel_for_range("copy from the card", channel.size() * sizeof(channel[0]), 1 << 20,
-                         [&](int64_t begin, int64_t end) {
-                           std::memcpy(to + begin, host + at + begin,
-                                       static_cast<size_t>(end - begin));
-                         });
-    });
-    unsigned long long rays = 0;
-    std::memcpy(&rays, host + film_bytes_ - sizeof rays, sizeof rays);
-    stats->rays = rays;
+  void take_samples(const CudaJob& job, const Sampling& sampling, DevicePicture* picture,
+                    RenderStats* stats) {
+    const RenderSettings& settings = job.settings;
+    const bool plain = is_plain(job), direct = settings.tier == RenderTier::kDirect;
+    const auto begin = std::chrono::steady_clock::now();
+    double told = 0;
+    for (int done = 0; done < sampling.count && stats->finished; done += kSamplesOfLaunch) {
+      picture->done = done;
+      picture->first_sample = sampling.first + done;
+      picture->samples = std::min(kSamplesOfLaunch, sampling.count - done);
+      picture->split = picture->samples >= 4 ? 4 : (picture->samples >= 2 ? 2 : 1);
+      picture->last = done + picture->samples == sampling.count;
+      if (direct) {
+        (plain ? cuda::launch_plain_direct : cuda::launch_full_direct)(*picture, stream_.get());
+      } else if (plain) {
+        cuda::launch_plain_path(*picture, stream_.get());
+      } else {
+        wavefront_.render(*picture, stream_.get());
+      }
+      check(cudaGetLastError(), "cannot launch a CUDA kernel");
+      if (!settings.progress || picture->last) continue;
+      wait();
+      const double now =
+          std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+      if (now < told + 0.1) continue;
+      told = now;
+      stats->finished =
+          settings.progress(static_cast<double>(done + picture->samples) / sampling.count);
+    }
   }
 
-  void finish() { check(cudaStreamSynchronize(stream_), "a CUDA kernel failed"); }
+  /// The exact channels, and the denoiser's guides that are made with them.
+  void describe(const CudaJob& job, DevicePicture* picture) {
+    const bool plain = is_plain(job);
+    const auto launch = plain ? cuda::launch_plain_channels : cuda::launch_full_channels;
+    if (picture->film.part != nullptr) {
+      const bool known = job.centered && job.settings.spp == 1;
+      if (!known || job.view.has_transparent)
+        launch(*picture, known ? ChannelRays::kUnknown : ChannelRays::kAll, stream_.get());
+    }
+    if (job.guide_samples > 0) {
+      picture->samples = job.guide_samples;
+      launch(*picture, ChannelRays::kGuides, stream_.get());
+    }
+    check(cudaGetLastError(), "cannot launch a CUDA kernel");
+  }
+
+  std::unique_ptr<Flight> take_flight() {
+    const std::lock_guard lock(mutex_);
+    if (flights_.empty()) return std::make_unique<Flight>();
+    std::unique_ptr<Flight> flight = std::move(flights_.back());
+    flights_.pop_back();
+    return flight;
+  }
+
+  /// Waits for a picture, on the thread that asks for it.
+  RenderStats land(std::unique_ptr<Flight> flight, Film* film, RenderStats stats) {
+    flight->downloaded.wait();
+    stats.rays = flight->film.end_download(film);
+    stats.device_seconds = flight->finished.since(flight->uploaded);
+    stats.upload_seconds = flight->uploaded.since(flight->start);
+    const std::lock_guard lock(mutex_);
+    flights_.push_back(std::move(flight));
+    return stats;
+  }
+
+  void wait() { check(cudaStreamSynchronize(stream_.get()), "a CUDA kernel failed"); }
 
   std::string name_;
-  cuda::Stream stream_ = nullptr;
+  cuda::OwnStream stream_;
   cuda::DeviceScene scene_;
+  cuda::DeviceLidar lidar_;
   cuda::Wavefront wavefront_;
-  cuda::DeviceBuffer film_, ambient_;
-  cuda::PinnedBuffer staging_;
-  size_t film_bytes_ = 0;
-  Event start_, uploaded_, finished_;
+  cuda::PinnedBuffer scan_scene_;
+  cuda::Finisher finisher_{stream_.get()};
+  cuda::DeviceBuffer ambient_paths_, ambient_;
+  std::mutex mutex_;
+  std::vector<std::unique_ptr<Flight>> flights_;  ///< that wait for a picture; guarded by mutex_
 };
 
 }  // namespace

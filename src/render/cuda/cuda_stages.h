@@ -1,13 +1,15 @@
 #pragma once
-// The path stage, the direct stage and the exact channels on an NVIDIA card. Where this build has
-// no CUDA, or the machine no card, make() says so.
+// The path stage, the direct stage, the interactive tier and the exact channels on an NVIDIA card.
+// Where this build has no CUDA, or the machine no card, make() says so.
 
+#include <future>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "render/kernel/camera/view_clip.h"
-#include "render/kernel/light/ambient_path.h"
+#include "render/kernel/path/path_state.h"
+#include "render/lidar_view.h"
 #include "render/renderer.h"
 #include "render/scene/bvh_scene.h"
 
@@ -23,8 +25,10 @@ struct CudaJob {
   const RenderSettings& settings;
   PathOptions path;
   uint32_t log2_samples = 0;
-  bool has_motion = false;  ///< something moves while the shutter is open
-  bool centered = false;    ///< as in cpu/path/tile.h
+  bool has_motion = false;        ///< something moves while the shutter is open
+  bool centered = false;          ///< as in cpu/path/tile.h
+  bool measures_ambient = false;  ///< for the direct tier, as measure_ambient() does
+  int guide_samples = 0;  ///< rays for a denoiser's guides at edges; 0 = those of the samples
 };
 
 class CudaStages {
@@ -37,10 +41,15 @@ class CudaStages {
   virtual std::string device_name() const = 0;
   /// Copies the scene to the card, after every update of the scene and of the BVH.
   virtual void update(const RenderScene& scene) = 0;
-  /// Paths for AmbientCube, as trace_ambient makes them.
-  virtual std::vector<AmbientPath> trace_ambient(const CudaJob& job, int width, int height) = 0;
-  /// Fills a film of the right size. The tier is kPath or kDirect, without an error to reach.
-  virtual RenderStats render(const CudaJob& job, Film* film) = 0;
+  /// Of pictures of the interactive tier; for these stages alone.
+  virtual std::unique_ptr<ViewHistory> make_history() const = 0;
+  /// Whether render() can finish pictures so.
+  virtual bool finishes(const PictureFinish& finish) = 0;
+  /// Fills a film of the right size, without an error to reach.
+  /// As scan_beams() does; the job's settings and camera are not used.
+  virtual void scan(const CudaJob& job, const LidarView& view, std::span<LidarReturn> returns) = 0;
+  /// The result is finished when it is taken; the job's tables may change before.
+  virtual std::future<RenderStats> begin(const CudaJob& job, Film* film) = 0;
 };
 
 }  // namespace gloam

@@ -4,6 +4,7 @@
 #include <cuda_runtime_api.h>
 
 #include <cstddef>
+#include <cstdint>
 
 #include "base/check.h"
 
@@ -40,6 +41,23 @@ class DeviceBuffer {
  private:
   void* data_ = nullptr;
   size_t size_ = 0;
+};
+
+/// Arrays in one piece of memory on the card: measured without a base, then placed.
+class DeviceLayout {
+ public:
+  explicit DeviceLayout(void* base = nullptr) : base_(reinterpret_cast<uintptr_t>(base)) {}
+  template <class T>
+  void put(T** array, size_t count) {
+    *array = reinterpret_cast<T*>(base_ + used_);
+    used_ += (count * sizeof(T) + kAlign - 1) / kAlign * kAlign;
+  }
+  size_t bytes() const { return used_; }
+
+ private:
+  static constexpr size_t kAlign = 256;
+  uintptr_t base_;
+  size_t used_ = 0;
 };
 
 /// Host memory that the card copies from and to at full speed.

@@ -1,33 +1,6 @@
 #include "render/cuda/device_scene.h"
 
-#include <cstring>
-#include <type_traits>
-
 namespace gloam::cuda {
-namespace {
-
-constexpr size_t kAlign = 256;
-
-}  // namespace
-
-const void* DeviceScene::Parcel::put(const void* data, size_t bytes) {
-  if (bytes == 0) return nullptr;
-  const size_t at = used;
-  used += (bytes + kAlign - 1) / kAlign * kAlign;
-  if (host == nullptr) return nullptr;  // measuring
-  std::memcpy(host + at, data, bytes);
-  return device + at;
-}
-template <class T>
-DeviceSpan<const T> DeviceScene::Parcel::put(DeviceSpan<const T> span) {
-  static_assert(std::is_trivially_copyable_v<T>);
-  return {static_cast<const T*>(put(span.data, span.size * sizeof(T))), span.size};
-}
-template <class T>
-DeviceSpan<const T> DeviceScene::Parcel::put(const std::vector<T>& v) {
-  return put(DeviceSpan<const T>{v.data(), static_cast<uint32_t>(v.size())});
-}
-
 const void* DeviceScene::keep(const void* data, size_t bytes) {
   if (bytes == 0 || data == nullptr) return nullptr;
   Kept& kept = kept_[data];
@@ -133,30 +106,38 @@ void DeviceScene::fill(const CudaJob& job, Parcel* parcel, DevicePicture* pictur
   device.scanned.instances = out.instances;
 }
 
-void DeviceScene::upload_trees(const BvhScene& bvh, Stream stream) {
-  const bool all = bvh_version_ != bvh.version();
-  bvh_version_ = bvh.version();
-  const auto copy = [&](const auto& from, size_t fresh, DeviceBuffer* to) {
-    const size_t element = sizeof(from[0]);
-    void* device = to->reserve(from.size() * element);
-    const size_t bytes = (all ? from.size() : fresh) * element;
-    if (bytes == 0) return;
-    check(cudaMemcpyAsync(device, from.data(), bytes, cudaMemcpyHostToDevice, stream),
-          "cannot copy the BVH to the GPU");
-  };
-  copy(bvh.nodes(), bvh.fresh_nodes(), &nodes_);
-  copy(bvh.triangles(), bvh.fresh_triangles(), &triangles_);
+template <class T>
+void DeviceScene::upload_tree(const std::vector<T>& from, size_t fresh, Parcel* parcel,
+                              DeviceBuffer* to) {
+  parts_.push_back({parcel->put(from.data(), fresh * sizeof(T)), to, fresh * sizeof(T)});
 }
 
-void DeviceScene::upload(const CudaJob& job, Stream stream, DevicePicture* picture) {
-  Parcel parcel;
-  fill(job, &parcel, picture);
-  const size_t bytes = parcel.used;
-  parcel = {staging_.reserve(bytes), static_cast<char*>(parcel_.reserve(bytes)), 0};
-  fill(job, &parcel, picture);
-  check(cudaMemcpyAsync(parcel.device, parcel.host, bytes, cudaMemcpyHostToDevice, stream),
-        "cannot copy the scene to the GPU");
-  upload_trees(job.bvh, stream);
+void DeviceScene::fill_all(const CudaJob& job, Parcel* parcel, DevicePicture* picture) {
+  fill(job, parcel, picture);
+  parts_.clear();
+  upload_tree(job.bvh.nodes(), job.bvh.fresh_nodes(), parcel, &nodes_);
+  upload_tree(job.bvh.triangles(), job.bvh.fresh_triangles(), parcel, &triangles_);
+}
+
+void DeviceScene::upload(const CudaJob& job, Stream stream, PinnedBuffer* staging,
+                         DevicePicture* picture) {
+  const auto copy = [stream](void* to, const void* from, size_t bytes, cudaMemcpyKind kind) {
+    if (bytes == 0) return;
+    check(cudaMemcpyAsync(to, from, bytes, kind, stream), "cannot copy the scene to the GPU");
+  };
+  place_.send([&](Parcel* parcel) { fill_all(job, parcel, picture); }, staging, stream);
+  const BvhScene& bvh = job.bvh;
+  const auto all = [&](const auto& from, DeviceBuffer* to) {
+    const size_t bytes = from.size() * sizeof(from[0]);
+    copy(to->reserve(bytes), from.data(), bytes, cudaMemcpyHostToDevice);
+  };
+  if (bvh_version_ != bvh.version()) {
+    bvh_version_ = bvh.version();
+    all(bvh.nodes(), &nodes_);
+    all(bvh.triangles(), &triangles_);
+  }
+  for (const TreePart& part : parts_)
+    copy(part.to->data(), part.from, part.bytes, cudaMemcpyDeviceToDevice);
   picture->tracer.bvh.nodes = static_cast<const BvhNode*>(nodes_.data());
   picture->tracer.bvh.triangles = static_cast<const BvhTriangle*>(triangles_.data());
 }

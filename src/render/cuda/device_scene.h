@@ -8,6 +8,7 @@
 #include "render/cuda/cuda_stages.h"
 #include "render/cuda/device_memory.h"
 #include "render/cuda/kernels.h"
+#include "render/cuda/parcel.h"
 
 namespace gloam::cuda {
 
@@ -16,36 +17,34 @@ class DeviceScene {
   /// The host's tables of meshes have been made anew: forgets what it knows of them.
   void forget() { kept_.clear(); }
   /// Sets picture->scene, camera, clip and tracer, with pointers of the card's. The copy has been
-  /// made when the stream has come so far; until then the job's tables must stay as they are.
-  void upload(const CudaJob& job, Stream stream, DevicePicture* picture);
+  /// made when the stream has come so far;
+  /// `staging` is free again then, the job's tables at once.
+  void upload(const CudaJob& job, Stream stream, PinnedBuffer* staging, DevicePicture* picture);
 
  private:
   struct Kept {
     DeviceBuffer buffer;
     size_t bytes = 0;
   };
-  /// Buffer that is copied for each picture: first measured, then filled.
-  struct Parcel {
-    char *host = nullptr, *device = nullptr;
-    size_t used = 0;
-
-    const void* put(const void* data, size_t bytes);
-    template <class T>
-    DeviceSpan<const T> put(DeviceSpan<const T> span);
-    template <class T>
-    DeviceSpan<const T> put(const std::vector<T>& v);
-  };
-
   template <class T>
   DeviceSpan<const T> keep(DeviceSpan<const T> span);
   const void* keep(const void* data, size_t bytes);
   MeshView keep_mesh(const MeshView& mesh, bool deforms, Parcel* parcel);
   void fill(const CudaJob& job, Parcel* parcel, DevicePicture* picture);
-  void upload_trees(const BvhScene& bvh, Stream stream);
+  template <class T>
+  void upload_tree(const std::vector<T>& from, size_t fresh, Parcel* parcel, DeviceBuffer* to);
+  void fill_all(const CudaJob& job, Parcel* parcel, DevicePicture* picture);
 
   std::map<const void*, Kept> kept_;  ///< by the host's address
-  DeviceBuffer parcel_, nodes_, triangles_;
-  PinnedBuffer staging_;
+  /// Part of a parcel that replaces the beginning of a tree's array.
+  struct TreePart {
+    const void* from = nullptr;
+    DeviceBuffer* to = nullptr;
+    size_t bytes = 0;
+  };
+  ParcelPlace place_;
+  DeviceBuffer nodes_, triangles_;
+  std::vector<TreePart> parts_;
   uint64_t bvh_version_ = 0;
 };
 

@@ -2,6 +2,7 @@
 // The kernels of the direct stage and of the exact channels.
 
 #include "render/cuda/pixels.cuh"
+#include "render/kernel/camera/guides.h"
 #include "render/kernel/path/direct.h"
 
 namespace gloam::cuda {
@@ -57,23 +58,55 @@ __global__ void __launch_bounds__(kBlock, kBlocks)
   count_rays(p.film, rays);
 }
 
+__device__ __forceinline__ Ray center_ray(const DevicePicture& p, const Place& at, bool moves,
+                                          RayCone* cone) {
+  const float time = moves ? p.camera.time_of(at.y, 0) : 0.0f;
+  return camera_ray(p.camera, static_cast<float>(at.x) + 0.5f, static_cast<float>(at.y) + 0.5f,
+                    time, cone);
+}
+
+/// The guides of a pixel, which is at an edge or shows its centre, before media.
+__device__ __forceinline__ bool start_guides(const DevicePicture& p, const Place& at,
+                                             size_t pixel) {
+  const bool edge = guides::is_edge(p.film, p.width, p.height, at.x, at.y);
+  p.film.albedo[pixel] = edge ? Vec3f{} : p.film.center_albedo[pixel];
+  p.film.normal[pixel] = edge ? Vec3f{} : p.film.center_normal[pixel];
+  return edge;
+}
+
+/// A ray of each pixel's centre, or for the guides of edges `samples` rays, with one trace for all.
 __global__ void __launch_bounds__(kBlock, kBlocks)
-    channels_kernel(const __grid_constant__ DevicePicture p, bool unknown_alone) {
+    channels_kernel(const __grid_constant__ DevicePicture p, ChannelRays rays_of) {
   const SceneView& scene = p.scene;
   const Place at = place_of(p.width, p.height, 1, true);
-  uint32_t rays = 0;
+  const bool for_guides = rays_of == ChannelRays::kGuides;
   const size_t pixel = at.pixel(p.width);
-  if (at.inside && (!unknown_alone || p.film.part[pixel] == kUnknownPart)) {
+  int count = 0;
+  if (at.inside) {
+    const bool known = rays_of == ChannelRays::kUnknown && p.film.part[pixel] != kUnknownPart;
+    count = for_guides ? (start_guides(p, at, pixel) ? p.samples : 0) : (known ? 0 : 1);
+  }
+  uint32_t rays = 0;
+  for (int k = 0; k < count; ++k) {
     RayCone cone;
-    const float time = !kPlainScenes && p.has_motion ? p.camera.time_of(at.y, 0) : 0.0f;
-    const Ray ray = camera_ray(p.camera, static_cast<float>(at.x) + 0.5f,
-                               static_cast<float>(at.y) + 0.5f, time, &cone);
+    const bool moves = !kPlainScenes && p.has_motion;
+    const Ray ray = for_guides ? guides::edge_ray(p.camera, at.x, at.y, k, moves, &cone)
+                               : center_ray(p, at, moves, &cone);
     Surface s;
     RayHit hit;
     const bool found = find_first(scene, ViewTracer{p}, ray, cone, &s, &hit, &rays);
-    store_channels(
-        p.film, pixel,
-        found ? describe_surface(scene, p.camera, ray, s, hit) : describe_sky(p.camera, ray));
+    if (!for_guides) {
+      store_channels(
+          p.film, pixel,
+          found ? describe_surface(scene, p.camera, ray, s, hit) : describe_sky(p.camera, ray));
+    } else if (found) {  // the sky's guides are zero
+      p.film.albedo[pixel] += s.base_color / static_cast<float>(count);
+      p.film.normal[pixel] += s.normal / static_cast<float>(count);
+    }
+  }
+  if (for_guides && at.inside && scene.has_media()) {
+    guides::veil(scene.media, p.camera, at.x, at.y, p.film.distance[pixel], &p.film.albedo[pixel],
+                 &p.film.normal[pixel]);
   }
   count_rays(p.film, rays);
 }

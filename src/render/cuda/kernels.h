@@ -23,6 +23,7 @@ struct DeviceFilm {
   Vec3f* center_albedo = nullptr;
   Vec2f* motion = nullptr;
   Vec3f* scene_flow = nullptr;
+  uint8_t* rgb = nullptr;
   unsigned long long* rays = nullptr;  ///< one number: traced so far
 };
 
@@ -45,6 +46,10 @@ struct DevicePicture {
   bool centered = false;  ///< direct stage: its sample answers for the exact channels too
 };
 
+/// Pixels that the exact channels are made for: all, those of kUnknownPart, or instead of channels
+/// the denoiser's guides, with `samples` rays at edges.
+enum class ChannelRays : uint8_t { kAll, kUnknown, kGuides };
+
 /// Value that the direct stage leaves in `part` where the exact channels need rays of their own.
 inline constexpr uint32_t kUnknownPart = ~0u;
 
@@ -57,11 +62,11 @@ using Stream = CUstream_st*;
 void launch_plain_path(const DevicePicture& picture, Stream stream);
 void launch_plain_direct(const DevicePicture& picture, Stream stream);
 void launch_full_direct(const DevicePicture& picture, Stream stream);
-/// Exact channels of all pixels, or of those of kUnknownPart alone.
-void launch_plain_channels(const DevicePicture& picture, bool unknown_alone, Stream stream);
-void launch_full_channels(const DevicePicture& picture, bool unknown_alone, Stream stream);
-/// (1 << kLog2AmbientPaths) paths of any picture.
-void launch_ambient(const DevicePicture& picture, AmbientPath* paths, Stream stream);
+void launch_plain_channels(const DevicePicture& picture, ChannelRays rays, Stream stream);
+void launch_full_channels(const DevicePicture& picture, ChannelRays rays, Stream stream);
+/// Measures the ambient light of any picture by (1 << kLog2AmbientPaths) paths.
+void launch_ambient(const DevicePicture& picture, AmbientPath* paths, AmbientCube* ambient,
+                    Stream stream);
 
 }  // namespace cuda
 }  // namespace gloam

@@ -8,8 +8,8 @@ namespace gloam::cuda {
 void launch_plain_direct(const DevicePicture& p, Stream stream) {
   direct_kernel<<<blocks_for(p, 1), kBlock, 0, stream>>>(p);
 }
-void launch_plain_channels(const DevicePicture& p, bool unknown_alone, Stream stream) {
-  channels_kernel<<<blocks_for(p, 1), kBlock, 0, stream>>>(p, unknown_alone);
+void launch_plain_channels(const DevicePicture& p, ChannelRays rays, Stream stream) {
+  channels_kernel<<<blocks_for(p, 1), kBlock, 0, stream>>>(p, rays);
 }
 
 }  // namespace gloam::cuda

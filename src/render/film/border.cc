@@ -2,14 +2,10 @@
 
 #include <algorithm>
 
+#include "render/kernel/film/border.h"
+
 namespace gloam {
 namespace {
-
-/// Place in 0 … n - 1 of a mirror image that repeats on both sides.
-int mirrored(int i, int n) {
-  const int turn = 2 * n, at = ((i % turn) + turn) % turn;
-  return at < n ? at : turn - 1 - at;
-}
 
 void add_mirrored(const std::vector<Vec3f>& plane, const Film& film, int border,
                   std::vector<Vec3f>* wide) {

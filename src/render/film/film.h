@@ -18,7 +18,10 @@ struct ObjectCover {
 
 struct Film {
   int width = 0, height = 0;
-  // Light; empty where no samples are asked for.
+  /// What RenderSettings::finish makes of the light for a display: 8-bit sRGB, (height x width x
+  /// 3).
+  std::vector<uint8_t> rgb;
+  // Light; empty where no samples are asked for, or only `rgb`.
   std::vector<Vec3f> radiance;         ///< mean over samples, linear Rec. 709 [cd/m²]
   std::vector<Vec3f> variance;         ///< of that mean, per channel; empty unless asked for
   std::vector<uint32_t> sample_count;  ///< in that mean; empty where every pixel has as many

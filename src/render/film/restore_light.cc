@@ -3,15 +3,12 @@
 
 #include "base/parallel.h"
 #include "render/film/denoise.h"
+#include "render/kernel/film/light_gain.h"
 
 namespace gloam {
 namespace {
 
 using WindowLight = Vec3Of<double>;
-
-constexpr int kWindowRadius = 32;      // of the windows that keep their light, to each side [px]
-constexpr double kMostWindowGain = 8;  // of one pixel and channel
-constexpr double kMostWholeGain = 2;   // of the picture, after that of its windows
 
 /// Sums over `n` values `stride` apart, each over those up to kWindowRadius away. Running sums in
 /// double precision: lamps and the dark beside them are in one picture.
@@ -54,15 +51,6 @@ WindowLight total(const std::vector<Vec3f>& picture) {
   return sum;
 }
 
-float gain(double wanted, double found, double most) {
-  return found > 0 ? static_cast<float>(std::clamp(wanted / found, 1 / most, most)) : 1.0f;
-}
-
-Vec3f gain(const WindowLight& wanted, const WindowLight& found, double most) {
-  return {gain(wanted.x, found.x, most), gain(wanted.y, found.y, most),
-          gain(wanted.z, found.z, most)};
-}
-
 }  // namespace
 
 void restore_light(const std::vector<Vec3f>& light, int width, int height,
@@ -70,8 +58,8 @@ void restore_light(const std::vector<Vec3f>& light, int width, int height,
   const std::vector<WindowLight> wanted = around(light, width, height);
   const std::vector<WindowLight> found = around(*picture, width, height);
   for (size_t i = 0; i < wanted.size(); ++i)
-    (*picture)[i] *= gain(wanted[i], found[i], kMostWindowGain);
-  const Vec3f rest = gain(total(light), total(*picture), kMostWholeGain);
+    (*picture)[i] *= light_gain(wanted[i], found[i], kMostWindowGain);
+  const Vec3f rest = light_gain(total(light), total(*picture), kMostWholeGain);
   for (Vec3f& p : *picture) p *= rest;
 }
 

@@ -43,10 +43,10 @@ struct InstanceView {
   uint32_t material = 0;
   uint32_t mesh = 0;
   int baked_pattern = -1, baked_wear = -1;  ///< rows of BakedView::patterns
-  int light = -1;   ///< row of lights when it emits and can be sampled
-  Vec3f size;       ///< [m]
-  Vec3f half_size;  ///< of the object that textures are fitted to [m]
-  Affine3f X_WG;    ///< at shutter open
+  int light = -1;                           ///< row of lights when it emits and can be sampled
+  Vec3f size;                               ///< [m]
+  Vec3f half_size;                          ///< of the object that textures are fitted to [m]
+  Affine3f X_WG;                            ///< at shutter open
   Affine3f X_WG_previous;
   DeviceSpan<const Affine3f>
       keys;  ///< evenly over times 0 … 1, the first is X_WG; empty unless moving
@@ -309,11 +309,11 @@ struct SceneView {
   EnvironmentView environment;  ///< instead of sky_texture
   int sky_texture = -1;
   float sky_scale = 0;
-  Vec3f sky_ambient;             ///< for indirect rays
-  AmbientCube ambient;           ///< for the direct stage
-  bool has_transparent = false;  ///< some material lets light straight through
-  bool has_color_only = false;   ///< some instance is color_only; then has_transparent holds, too
-  bool has_emitters = false;  ///< something that a ray can hit gives light: sky, sphere, instance
+  Vec3f sky_ambient;                     ///< for indirect rays
+  const AmbientCube* ambient = nullptr;  ///< for the direct stage
+  bool has_transparent = false;          ///< some material lets light straight through
+  bool has_color_only = false;  ///< some instance is color_only; then has_transparent holds, too
+  bool has_emitters = false;    ///< something that a ray can hit gives light: sky, sphere, instance
   bool has_visible_lights = false;  ///< some sphere or sun can be hit
 
   GLOAM_HD bool has_textures() const { return !kPlainScenes && textures.size > 0; }

@@ -140,9 +140,10 @@ void BvhScene::place_triangles(const MeshView& mesh, const MeshTree& tree) {
 }
 
 void BvhScene::follow_deformables(const RenderScene& scene) {
-  for (size_t i = 0; i < meshes_.size(); ++i) {
+  parallel_for("deforming trees", static_cast<int64_t>(meshes_.size()), [&](int64_t row) {
+    const auto i = static_cast<size_t>(row);
     MeshTree& mesh = meshes_[i];
-    if (!mesh.deforms || mesh.tree.order.empty()) continue;
+    if (!mesh.deforms || mesh.tree.order.empty()) return;
     const MeshView& view = scene.meshes()[i];
     const std::vector<BvhBox> boxes = triangle_boxes(view);
     refit_bvh(boxes, &mesh.tree);
@@ -154,7 +155,7 @@ void BvhScene::follow_deformables(const RenderScene& scene) {
       }
     }
     place_triangles(view, mesh);
-  }
+  });
 }
 
 BvhBox BvhScene::box_of(const RenderScene& scene, const BvhInstance& instance) const {

@@ -108,7 +108,9 @@ Result<MeshStore> MeshStore::make(const RenderDescription& description) {
 void MeshStore::update(const RenderDescription& description, std::span<const PoseFrame* const> keys,
                        const PoseFrame& previous) {
   const size_t rigid = description.meshes.size();
-  for (size_t d = 0; d < description.deformables.size(); ++d) {
+  const auto count = static_cast<int64_t>(description.deformables.size());
+  parallel_for("deformables", count, [&](int64_t row) {
+    const auto d = static_cast<size_t>(row);
     const DeformableDescription& deformable = description.deformables[d];
     MeshBuffers& buffers = meshes_[rigid + d];
     const size_t n = deformable.rest.positions.size();
@@ -132,7 +134,7 @@ void MeshStore::update(const RenderDescription& description, std::span<const Pos
     buffers.key_count = moving ? static_cast<uint32_t>(keys.size()) : 0;
     recompute_normals(deformable.rest, &buffers);
     if (!buffers.area_cdf.empty()) make_samplable(description, static_cast<uint32_t>(rigid + d));
-  }
+  });
 }
 
 const TriangleMesh& MeshStore::mesh_at(const RenderDescription& description, size_t row) const {

@@ -38,6 +38,10 @@ class CameraModels {
   /// The scene's [[temperature]]s, for thermal cameras. Error: one that fits nothing.
   Status set_temperatures(const std::vector<TemperatureOptions>& temperatures);
   double ev100() const { return ev100_; }
+  /// Whether `rgb` is the plain tone map of the light, and no model needs the light itself.
+  bool shows_light() const {
+    return channels_.has("rgb") && imager_ == nullptr && events_ == nullptr;
+  }
   uint64_t memory() const;
   /// Track for the output events, else null: the camera's own until it is given one that others
   /// share.

@@ -68,7 +68,8 @@ Status check_numbers(const CameraRequest& request) {
   }
   if (render.error && !(*render.error >= 1e-4 && *render.error <= 1))
     return refuse(fmt::format("error = {} is not in 0.0001 … 1", *render.error));
-  if (render.error && render.tier_or_default(false) != "path") return refuse("'error' requires the path tier");
+  if (render.error && render.tier_or_default(false) != "path")
+    return refuse("'error' requires the path tier");
   if (const int depth = request.render.max_depth.value_or(1); depth < 1 || depth > 64)
     return refuse(fmt::format("max_depth = {} is not in 1 … 64", depth));
   return {};
@@ -176,9 +177,8 @@ Result<std::unique_ptr<CameraSensor>> CameraSensor::create(const RenderDescripti
   if (settings.tier == RenderTier::kInteractive && !channels.light())
     settings.tier = RenderTier::kDirect;
   if (request.render.denoise && channels.light() && settings.tier != RenderTier::kInteractive) {
-    const bool on_card = renders_on_card(request.render.device);
-    sensor->denoiser_ =
-        make_denoiser({.device = on_card ? DenoiseDevice::kCuda : DenoiseDevice::kCpu});
+    sensor->denoises_ = true;
+    sensor->device_ = request.render.device;
     settings.guide_samples = 4;
     settings.variance = settings.tier == RenderTier::kPath && settings.error <= 0 &&
                         !description.volumes.empty();  // for warn_of_noise()
@@ -187,15 +187,16 @@ Result<std::unique_ptr<CameraSensor>> CameraSensor::create(const RenderDescripti
   const bool geometry = details || channels.needs(ChannelSource::kSurface);
   settings.cover = channels.needs(ChannelSource::kCover);
   const bool particles = channels.light() && !weather.particles.empty();
-  settings.exact_channels = geometry || sensor->denoiser_ != nullptr || particles;
-  settings.exact_details = details || sensor->denoiser_ != nullptr;
+  sensor->needs_exact_ = geometry || particles;
+  sensor->needs_details_ = details;
+  settings.exact_channels = sensor->needs_exact_ || sensor->denoises_;
+  settings.exact_details = details || sensor->denoises_;
   return sensor;
 }
 
 void CameraSensor::set_progress(std::function<bool(double done)> progress) {
-  settings_.progress = progress;
-  if (denoiser_ != nullptr)
-    denoiser_->set_may_continue([progress = std::move(progress)] { return progress(1); });
+  settings_.progress = std::move(progress);
+  denoiser_.reset();  // the next one asks this callback
 }
 
 PictureMemory CameraSensor::memory() const {
@@ -209,7 +210,7 @@ PictureMemory CameraSensor::memory() const {
   if (settings_.variance) pixel += sizeof(Vec3f);
   if (settings_.tier == RenderTier::kInteractive) pixel += 400;
   PictureMemory out;
-  if (denoiser_ != nullptr) {
+  if (denoises_) {
     // Measured with Open Image Denoise 2.5, which goes over larger pictures in tiles.
     constexpr uint64_t kDenoiser = 600, kTile = uint64_t{2160} * 2160;
     pixel += sizeof(Vec3f);
@@ -260,6 +261,7 @@ std::vector<Vec3f>* CameraSensor::render(Renderer& renderer, RenderTurns& turns,
                                          const CameraView& view,
                                          std::span<const PoseFrame* const> keys,
                                          const PoseFrame& previous) {
+  std::future<RenderStats> picture;
   {
     const RenderTurn turn(turns, use_);
     settings_.turns = &turns;
@@ -268,10 +270,12 @@ std::vector<Vec3f>* CameraSensor::render(Renderer& renderer, RenderTurns& turns,
       history_ = renderer.make_history();
       settings_.history = history_.get();
     }
-    stats_ = renderer.render(view, settings_, &film_);
-    if (!stats_.finished) return nullptr;
-    warn_of_noise(renderer);
+    plan_finish(renderer);
+    picture = renderer.begin(view, settings_, &film_);
   }
+  stats_ = picture.get();
+  if (!stats_.finished) return nullptr;
+  warn_of_noise(renderer);
   accumulate();
   if (!channels_.light() || description_.weather.particles.empty()) return nullptr;
   std::vector<Vec3f>* const light = denoise();
@@ -281,9 +285,27 @@ std::vector<Vec3f>* CameraSensor::render(Renderer& renderer, RenderTurns& turns,
   return light;
 }
 
+void CameraSensor::plan_finish(Renderer& renderer) {
+  settings_.finish = {};
+  settings_.exact_channels = needs_exact_ || denoises_;
+  settings_.exact_details = needs_details_ || denoises_;
+  if (!channels_.light() || pictures_ > 1) return;  // their mean is denoised
+  const bool shows = models_->shows_light() && !channels_.has("radiance") && !drops_ &&
+                     description_.weather.particles.empty();
+  settings_.finish = {.denoise = denoises_ || settings_.tier == RenderTier::kInteractive,
+                      .to_display = shows,
+                      .tone = {.ev100 = static_cast<float>(models_->ev100())}};
+  if (!renderer.finishes(settings_)) {
+    settings_.finish = {};
+  } else if (settings_.finish.denoise) {  // its guides are the renderer's own matter
+    settings_.exact_channels = needs_exact_;
+    settings_.exact_details = needs_details_;
+  }
+}
+
 uint32_t CameraSensor::draws(const CameraView& view, int64_t frame_index) const {
   if (sensing().events) return 0;
-  if (denoiser_ == nullptr || settings_.tier == RenderTier::kInteractive)
+  if (!denoises_ || settings_.tier == RenderTier::kInteractive)
     return static_cast<uint32_t>(frame_index);
   const uint64_t index = draws_by_index_ ? static_cast<uint64_t>(frame_index) : 0;
   return static_cast<uint32_t>(hash_bytes(&view.X_WC_open, sizeof(view.X_WC_open), index));
@@ -333,9 +355,16 @@ std::vector<Vec3f>* CameraSensor::denoise() {
   // Blurred light has blurred albedo and normal, too: means over the same samples. Depth is sharp
   // and no guide.
   const bool blurred = camera().aperture_radius > 0 || camera().exposure_time > 0;
+  if (!denoises_ || settings_.finish.denoise) return &film_.radiance;
+  if (denoiser_ == nullptr) {
+    const bool on_card = renders_on_card(device_);
+    denoiser_ = make_denoiser({.device = on_card ? DenoiseDevice::kCuda : DenoiseDevice::kCpu});
+    if (const auto& progress = settings_.progress)
+      denoiser_->set_may_continue([progress] { return progress(1); });
+  }
   std::vector<float> sharp;
   if (blurred) sharp.swap(film_.depth);
-  const bool clean = denoiser_ != nullptr && denoiser_->denoise(film_, &clean_).ok();
+  const bool clean = denoiser_->denoise(film_, &clean_).ok();
   if (blurred) sharp.swap(film_.depth);
   return clean ? &clean_ : &film_.radiance;
 }
@@ -365,10 +394,15 @@ void CameraSensor::convert(const PoseFrame& now, int64_t frame_index, const Came
   frame->readout_time = camera().readout_time;
 
   if (channels_.light()) {
-    if (light == nullptr) light = denoise();
-    if (drops_) drops_->draw(now.time, light);
-    models_->develop(*light, now.run, frame);
-    if (channels_.has("radiance")) frame->radiance = flatten(*light);
+    if (settings_.finish.to_display) {
+      frame->ev100 = models_->ev100();
+      frame->rgb = std::move(film_.rgb);
+    } else {
+      if (light == nullptr) light = denoise();
+      if (drops_) drops_->draw(now.time, light);
+      models_->develop(*light, now.run, frame);
+      if (channels_.has("radiance")) frame->radiance = flatten(*light);
+    }
     if (channels_.has("samples")) {
       frame->samples = film_.sample_count;
       frame->samples.resize(film_.pixel_count(), static_cast<uint32_t>(settings_.spp));

@@ -101,6 +101,9 @@ class CameraSensor {
   /// The light of the next picture, in a turn at the renderer; null = as denoise() gives it.
   std::vector<Vec3f>* render(Renderer& renderer, RenderTurns& turns, const CameraView& view,
                              std::span<const PoseFrame* const> keys, const PoseFrame& previous);
+  /// Leaves to the renderer what it can finish of the next picture: nothing then is copied for
+  /// that.
+  void plan_finish(Renderer& renderer);
   /// The film's light, denoised where it is to be.
   std::vector<Vec3f>* denoise();
   Shutter shutter(std::span<const PoseFrame* const> keys) const;
@@ -131,7 +134,11 @@ class CameraSensor {
   std::unique_ptr<CameraModels> models_;  // models after the light
   std::unique_ptr<ViewHistory> history_;  // history of the interactive tier
   std::optional<LensDrops> drops_;
-  std::unique_ptr<Denoiser> denoiser_;  // null: the samples as they are
+  bool denoises_ = false;               // false: the samples as they are
+  std::string device_;                  // of the renderer
+  bool needs_exact_ = false;            // exact channels, by outputs or particles
+  bool needs_details_ = false;          // their details, by outputs
+  std::unique_ptr<Denoiser> denoiser_;  // where the renderer does not denoise; made when needed
   Film film_;
   std::vector<Vec3f> clean_;
   bool same_instant_ = false, draws_by_index_ = false;

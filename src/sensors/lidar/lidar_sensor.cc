@@ -4,9 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "base/check.h"
 #include "base/hash.h"
+#include "base/parallel.h"
 #include "base/text.h"
 #include "render/kernel/lidar/lidar_particles.h"
 #include "render/scene/pose.h"
@@ -183,43 +185,65 @@ std::shared_ptr<const LidarScan> LidarSensor::scan(Renderer& renderer, RenderTur
 
 void LidarSensor::write_points(std::span<const Affine3f> X_WL, LidarScan* scan) const {
   const auto most = static_cast<size_t>(model_.optics.most_returns);
+  const auto count_of = [&](size_t firing) {
+    size_t count = 0;
+    while (count < most && returns_[place_[firing] * most + count].range > 0) ++count;
+    return count;
+  };
+  // Where the points of each block of firings begin, so that all threads write at once.
+  constexpr size_t kFirings = 2048;
+  const size_t blocks = (firings_.size() + kFirings - 1) / kFirings;
+  std::vector<size_t> begin(blocks + 1);
+  const auto each_of = [&](size_t block, const auto& visit) {
+    const size_t end = std::min((block + 1) * kFirings, firings_.size());
+    for (size_t i = block * kFirings; i < end; ++i) visit(i);
+  };
+  parallel_for("lidar points", static_cast<int64_t>(blocks), [&](int64_t task) {
+    const auto block = static_cast<size_t>(task);
+    each_of(block, [&](size_t i) { begin[block + 1] += count_of(i); });
+  });
+  std::partial_sum(begin.begin(), begin.end(), begin.begin());
+  for (auto* values : {&scan->x, &scan->y, &scan->z, &scan->intensity, &scan->range, &scan->time})
+    values->resize(begin.back());
+  for (auto* values : {&scan->ring, &scan->column}) values->resize(begin.back());
+  scan->return_number.resize(begin.back());
+  scan->part.resize(lidar_.options.truth ? begin.back() : 0);
+  parallel_for("lidar points", static_cast<int64_t>(blocks), [&](int64_t task) {
+    size_t point = begin[static_cast<size_t>(task)];
+    each_of(static_cast<size_t>(task), [&](size_t i) {
+      const size_t count = count_of(i);
+      for (size_t r = 0; r < count; ++r) write_point(X_WL.back(), {i, r, point++}, scan);
+    });
+  });
+}
+
+void LidarSensor::write_point(const Affine3f& end, const PlacedReturn& at, LidarScan* scan) const {
+  const LidarFiring& firing = firings_[at.firing];
+  const size_t beam = place_[at.firing], i = at.point;
+  const LidarReturn& found =
+      returns_[beam * static_cast<size_t>(model_.optics.most_returns) + at.number];
+  Vec3f p = firing.d * found.range;
+  if (lidar_.options.deskew) {
+    const DeviceSpan<const LidarMotion> motions{motions_.data(),
+                                                static_cast<uint32_t>(motions_.size())};
+    const Ray ray = beam_ray(motions, firing.d, beams_[beam].time);
+    const Vec3f from_end = ray.o - end.p + ray.d * found.range;
+    p = {dot(from_end, end.x), dot(from_end, end.y), dot(from_end, end.z)};
+  }
+  scan->x[i] = p.x;
+  scan->y[i] = p.y;
+  scan->z[i] = p.z;
+  // Sensors are calibrated for their overlap as for the range.
+  const float overlap = std::max(lidar::overlap(model_.optics, found.range), 1e-6f);
+  const float plain = found.signal * found.range * found.range / overlap;
   const bool reflectivity = lidar_.options.intensity == "reflectivity";
-  const double length = scan->end - scan->start;
-  for (auto* values : {&scan->x, &scan->y, &scan->z, &scan->intensity, &scan->range, &scan->time}) {
-    values->reserve(firings_.size());
-  }
-  for (auto* values : {&scan->ring, &scan->column}) values->reserve(firings_.size());
-  scan->return_number.reserve(firings_.size());
-  const Affine3f& end = X_WL.back();
-  const DeviceSpan<const LidarMotion> motions{motions_.data(),
-                                              static_cast<uint32_t>(motions_.size())};
-  for (size_t i = 0; i < firings_.size(); ++i) {
-    const LidarFiring& firing = firings_[i];
-    const size_t beam = place_[i];
-    for (size_t r = 0; r < most; ++r) {
-      const LidarReturn& found = returns_[beam * most + r];
-      if (!(found.range > 0)) break;
-      Vec3f p = firing.d * found.range;
-      if (lidar_.options.deskew) {
-        const Ray ray = beam_ray(motions, firing.d, beams_[beam].time);
-        const Vec3f from_end = ray.o - end.p + ray.d * found.range;
-        p = {dot(from_end, end.x), dot(from_end, end.y), dot(from_end, end.z)};
-      }
-      scan->x.push_back(p.x);
-      scan->y.push_back(p.y);
-      scan->z.push_back(p.z);
-      // Sensors are calibrated for their overlap as for the range.
-      const float overlap = std::max(lidar::overlap(model_.optics, found.range), 1e-6f);
-      const float plain = found.signal * found.range * found.range / overlap;
-      scan->intensity.push_back(reflectivity ? calibrated_reflectivity(plain) : found.signal);
-      scan->range.push_back(found.range);
-      scan->time.push_back(static_cast<float>(firing.time * length));
-      scan->ring.push_back(firing.ring);
-      scan->column.push_back(firing.column);
-      scan->return_number.push_back(static_cast<uint8_t>(r));
-      if (lidar_.options.truth) scan->part.push_back(found.part);
-    }
-  }
+  scan->intensity[i] = reflectivity ? calibrated_reflectivity(plain) : found.signal;
+  scan->range[i] = found.range;
+  scan->time[i] = static_cast<float>(firing.time * (scan->end - scan->start));
+  scan->ring[i] = firing.ring;
+  scan->column[i] = firing.column;
+  scan->return_number[i] = static_cast<uint8_t>(at.number);
+  if (lidar_.options.truth) scan->part[i] = found.part;
 }
 
 void LidarSensor::add_truth(LidarScan* scan) const {

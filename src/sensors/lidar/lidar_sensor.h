@@ -39,6 +39,11 @@ class LidarSensor {
   Status find_surfaces();
   void plan(std::span<const PoseFrame> keys, int64_t index);
   void write_points(std::span<const Affine3f> X_WL, LidarScan* scan) const;
+  /// A return of a firing, and the point that it becomes.
+  struct PlacedReturn {
+    size_t firing, number, point;
+  };
+  void write_point(const Affine3f& end, const PlacedReturn& at, LidarScan* scan) const;
   void add_truth(LidarScan* scan) const;
 
   const RenderDescription& rendered_;

@@ -4,6 +4,7 @@
 
 #include "base/check.h"
 #include "base/memory.h"
+#include "base/parallel.h"
 #include "scene/files/mujoco_guard.h"
 #include "sim/commands/live_fields.h"
 #include "sim/effects/surface_vertices.h"
@@ -116,10 +117,10 @@ void PoseSolver::fill_vertices(const LiveFields* live, PoseFrame& frame) {
   const mjModel& m = model();
   const mjData& d = *data_;
   frame.vertices.resize(static_cast<size_t>(3 * layout_.nvertex));
-  for (int skin = 0; skin < m.nskin; ++skin) {
-    skin_vertices(m, skin, d.xpos, d.xquat,
+  parallel_for("skins", m.nskin, [&](int64_t skin) {
+    skin_vertices(m, static_cast<int>(skin), d.xpos, d.xquat,
                   frame.vertices.data() + 3 * layout_.skin_first[static_cast<size_t>(skin)]);
-  }
+  });
   std::transform(d.flexvert_xpos, d.flexvert_xpos + 3 * m.nflexvert,
                  frame.vertices.begin() + 3 * m.nskinvert,
                  [](mjtNum x) { return static_cast<float>(x); });

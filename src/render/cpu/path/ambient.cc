@@ -1,8 +1,11 @@
 #include "render/cpu/path/ambient.h"
 
+#include <vector>
+
 #include "base/parallel.h"
 
 namespace gloam {
+namespace {
 
 std::vector<AmbientPath> trace_ambient(const SceneView& scene, const CpuTracer& tracer,
                                        const CameraView32& camera, int width, int height,
@@ -18,24 +21,19 @@ std::vector<AmbientPath> trace_ambient(const SceneView& scene, const CpuTracer& 
   return paths;
 }
 
-AmbientCube mean_ambient(const std::vector<AmbientPath>& paths) {
-  constexpr float kPriorFraction = 0.05f;  // of all paths, for the mean over all facings
-  Vec3f by_facing[LightGuide::kFacings], light;
-  float count[LightGuide::kFacings] = {}, found = 0;
-  for (const AmbientPath& path : paths) {
+}  // namespace
+
+AmbientCube measure_ambient(const SceneView& scene, const CpuTracer& tracer,
+                            const CameraView32& camera, int width, int height, int max_depth) {
+  AmbientSum sums[LightGuide::kFacings], all;
+  for (const AmbientPath& path : trace_ambient(scene, tracer, camera, width, height, max_depth)) {
     if (path.facing < 0) continue;
-    by_facing[path.facing] += path.light;
-    count[path.facing] += 1;
-    light += path.light;
-    found += 1;
+    for (AmbientSum* sum : {&sums[path.facing], &all}) {
+      sum->light += path.light;
+      sum->count += 1;
+    }
   }
-  AmbientCube ambient;
-  if (found == 0) return ambient;
-  const float usual = kPriorFraction * static_cast<float>(paths.size());
-  for (int k = 0; k < LightGuide::kFacings; ++k) {
-    ambient.light[k] = (by_facing[k] + light * (usual / found)) / (count[k] + usual);
-  }
-  return ambient;
+  return mean_ambient(sums, all);
 }
 
 }  // namespace gloam

@@ -1,33 +1,11 @@
 #include "render/cpu/path/edge_samples.h"
 
-#include <algorithm>
 #include <vector>
 
-#include "render/kernel/camera/channels.h"
-#include "render/kernel/math/sampler.h"
-#include "render/kernel/media/medium_march.h"
+#include "render/kernel/camera/guides.h"
 
 namespace gloam {
 namespace {
-
-/// Whether the centres of two pixels differ so much that one ray each cannot tell what lies
-/// between.
-bool differs(const Film& film, size_t i, size_t j) {
-  constexpr float kCosine = 0.9f, kAlbedo = 0.15f;
-  const Vec3f d = film.center_albedo[i] - film.center_albedo[j];
-  return film.part[i] != film.part[j] || dot(d, d) > kAlbedo * kAlbedo ||
-         (film.part[i] != 0 && dot(film.center_normal[i], film.center_normal[j]) < kCosine);
-}
-
-bool is_edge(const Film& film, int x, int y) {
-  const size_t width = static_cast<size_t>(film.width), i = static_cast<size_t>(y) * width + x;
-  for (int v = std::max(0, y - 1); v <= std::min(film.height - 1, y + 1); ++v) {
-    for (int u = std::max(0, x - 1); u <= std::min(film.width - 1, x + 1); ++u) {
-      if (differs(film, i, static_cast<size_t>(v) * width + u)) return true;
-    }
-  }
-  return false;
-}
 
 /// The edges of one row of the picture.
 class Row {
@@ -38,13 +16,17 @@ class Row {
   uint64_t run() {
     for (int x = 0; x < film_->width; ++x) {
       const size_t i = pixel(x);
-      const bool edge = is_edge(*film_, x, y_);
+      const bool edge = guides::is_edge(*film_, film_->width, film_->height, x, y_);
       film_->albedo[i] = edge ? Vec3f{} : film_->center_albedo[i];
       film_->normal[i] = edge ? Vec3f{} : film_->center_normal[i];
       for (int k = 0; edge && k < count_; ++k) add(x, k);
     }
     flush();
-    for (int x = 0; job_.scene.has_media() && x < film_->width; ++x) veil(x);
+    for (int x = 0; job_.scene.has_media() && x < film_->width; ++x) {
+      const size_t i = pixel(x);
+      guides::veil(job_.scene.media, job_.camera, x, y_, film_->distance[i], &film_->albedo[i],
+                   &film_->normal[i]);
+    }
     return rays_;
   }
 
@@ -52,31 +34,9 @@ class Row {
   size_t pixel(int x) const { return static_cast<size_t>(y_) * film_->width + x; }
 
   void add(int x, int k) {
-    // One pattern for every pixel and picture: what stands still must not flicker.
-    Sampler sampler = Sampler::make(0, 0, 0, 0, static_cast<uint32_t>(k), 0);
-    const Vec2f offset = sample_pixel_filter(sampler.next_2d());
-    const float u = job_.has_motion ? sampler.next_1d() : 0.0f;
-    const float time = job_.has_motion ? job_.camera.time_of(y_, u) : 0.0f;
     x_[used_] = x;
-    samples_[used_] = camera_ray(job_.camera, static_cast<float>(x) + 0.5f + offset.x,
-                                 static_cast<float>(y_) + 0.5f + offset.y, time, &cones_[used_]);
+    samples_[used_] = guides::edge_ray(job_.camera, x, y_, k, job_.has_motion, &cones_[used_]);
     if (++used_ == kPacket) flush();
-  }
-
-  /// Media before the surface: what scatters first counts, each by the light that it takes.
-  void veil(int x) {
-    constexpr int kSteps = 64;
-    RayCone cone;
-    const Ray ray = camera_ray(job_.camera, static_cast<float>(x) + 0.5f,
-                               static_cast<float>(y_) + 0.5f, 0.0f, &cone);
-    const size_t i = pixel(x);
-    const MarchResult m =
-        march(job_.scene.media, ray, min(film_->distance[i], 1e30f), 0.0f, kSteps, {}, true,
-              [](const MarchStep& step) { return step.medium.scattering; });
-    const Vec3f albedo = film_->albedo[i] * m.transmittance + m.radiance;
-    // Emission is brighter than any albedo.
-    film_->albedo[i] = {min(albedo.x, 1.0f), min(albedo.y, 1.0f), min(albedo.z, 1.0f)};
-    film_->normal[i] *= luminance(m.transmittance);
   }
 
   void flush() {

@@ -21,17 +21,20 @@ class TracedScene {
 
   void update(std::span<const PoseFrame* const> keys, const PoseFrame& previous) {
     scene_->update(keys, previous);
-    // All geometry is valid, so that Embree can only fail for want of memory.
-    if (embree_ != nullptr && !embree_->update(*scene_).ok()) throw std::bad_alloc();
+    embree_is_behind_ = embree_ != nullptr;
+    // Only its next tracer tells whether Embree is used; meshes are made anew for one update.
+    if (!keeps_own_ || !scene_->rebuilt_meshes().empty()) bring_embree_up();
     if (keeps_own_) own_.update(*scene_);
   }
 
   /// Valid until the next update, as the one below.
-  CpuTracer tracer() const {
+  CpuTracer tracer() {
+    bring_embree_up();
     return embree_ != nullptr ? embree_->tracer(*scene_) : by_own(own_.tracer(*scene_));
   }
   /// Tracer of the bodies that never move, without infinite planes.
-  CpuTracer static_tracer() const {
+  CpuTracer static_tracer() {
+    bring_embree_up();
     return embree_ != nullptr ? embree_->static_tracer(*scene_)
                               : by_own(own_.static_tracer(*scene_));
   }
@@ -40,6 +43,12 @@ class TracedScene {
   const BvhScene& own() const { return own_; }
 
  private:
+  void bring_embree_up() {
+    if (!embree_is_behind_) return;
+    // All geometry is valid, so that Embree can only fail for want of memory.
+    if (!embree_->update(*scene_).ok()) throw std::bad_alloc();
+    embree_is_behind_ = false;
+  }
   CpuTracer by_own(const BvhTracer& own) const {
     CpuTracer tracer;
     tracer.rows = {own_.still().data(), static_cast<uint32_t>(own_.still().size())};
@@ -51,6 +60,7 @@ class TracedScene {
   std::unique_ptr<EmbreeScene> embree_;
   BvhScene own_;
   bool keeps_own_;
+  bool embree_is_behind_ = false;
 };
 
 }  // namespace gloam

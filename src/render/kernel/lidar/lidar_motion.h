@@ -6,6 +6,12 @@
 
 namespace gloam {
 
+struct LidarBeam {
+  Vec3f d;          ///< unit, in the sensor's frame L: x ahead, y to the left, z up
+  float time = 0;   ///< 0 … 1 between the keys that the renderer was updated to
+  uint32_t id = 0;  ///< of the beam in its scan, for its draws
+};
+
 /// Motion of a sensor while it scans: L turns evenly about a fixed axis and moves evenly. Times run
 /// from 0 to 1.
 struct LidarMotion {

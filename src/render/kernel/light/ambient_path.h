@@ -14,6 +14,26 @@ struct AmbientPath {
   Vec3f light;      ///< [cd/m²]
 };
 
+/// Sum over paths from surfaces of one facing.
+struct AmbientSum {
+  Vec3f light;
+  float count = 0;
+};
+
+/// Light that surfaces in view receive, by the axis that they face, beyond that straight from lamps
+/// and suns. `sums`: by facing, and of `all`, over 2^kLog2AmbientPaths paths.
+GLOAM_HD AmbientCube mean_ambient(const AmbientSum* sums, const AmbientSum& all) {
+  constexpr float kPriorFraction = 0.05f;  // of all paths, for the mean over all facings
+  constexpr float kUsual = kPriorFraction * static_cast<float>(1 << kLog2AmbientPaths);
+  AmbientCube ambient;
+  if (all.count == 0) return ambient;
+  for (int k = 0; k < LightGuide::kFacings; ++k) {
+    ambient.light[k] =
+        (sums[k].light + all.light * (kUsual / all.count)) / (sums[k].count + kUsual);
+  }
+  return ambient;
+}
+
 namespace ambient {
 
 inline constexpr float kAmbientConeSpread =

@@ -75,7 +75,7 @@ GLOAM_HD void meet_surface(const SceneView& scene, DirectState* d, const RayHit&
   layer_albedo(*scene.albedo, d->s.roughness, d->wo.z, &a, &b);
   const Vec3f albedo = d->bsdf.base.diffuse + d->bsdf.base.f0 * a + d->bsdf.base.f90 * b;
   d->result.radiance +=
-      (d->s.emission + albedo * scene.ambient.on(d->s.normal)) * (d->transmittance * d->s.opacity);
+      (d->s.emission + albedo * scene.ambient->on(d->s.normal)) * (d->transmittance * d->s.opacity);
   d->next_light = 0;
   if (scene.has_many_lights()) d->light_sampler.prepare(scene, d->s.p, d->s.geometric);
 }

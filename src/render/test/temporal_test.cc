@@ -1,0 +1,160 @@
+// The interactive tier's history on a card, run on the host: what joins, what is refused, and how
+// fast changed light is followed.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "base/rng.h"
+#include "render/kernel/interactive/temporal.h"
+
+namespace gloam {
+namespace {
+
+constexpr int kWidth = 24, kHeight = 16;
+constexpr size_t kPixels = size_t{kWidth} * kHeight;
+
+struct Planes {
+  std::vector<Vec3f> light{kPixels}, recent{kPixels}, normal{kPixels};
+  std::vector<float> age = std::vector<float>(kPixels), distance = std::vector<float>(kPixels);
+  std::vector<uint32_t> part = std::vector<uint32_t>(kPixels);
+  TemporalPlanes view() {
+    return {light.data(), recent.data(), age.data(), distance.data(), part.data(), normal.data()};
+  }
+};
+
+/// A camera that looks down on a floor, 2 m below.
+struct Floor {
+  Planes planes[2];
+  std::vector<Vec3f> radiance{kPixels}, albedo{kPixels}, scene_flow{kPixels}, color{kPixels};
+  std::vector<Vec2f> motion{kPixels};
+  TemporalPicture picture;
+  int taken = 0;
+  RandomStream random{3, 0};
+
+  Floor() {
+    picture.width = kWidth;
+    picture.height = kHeight;
+    picture.camera.fx = picture.camera.fy = 20;
+    picture.camera.cx = 0.5f * kWidth;
+    picture.camera.cy = 0.5f * kHeight;
+    picture.camera.pose.X_WC_open.p = picture.camera.pose.X_WC_previous.p = {0, 0, 2};
+    for (Vec3f& a : albedo) a = {0.5f, 0.25f, 0.8f};
+  }
+
+  /// Light with so much noise that single pictures are of no use: nothing, or four times its mean.
+  void take(Vec3f mean) {
+    for (size_t i = 0; i < kPixels; ++i) {
+      const double u = random.uniform(static_cast<uint64_t>(taken), static_cast<uint32_t>(i));
+      radiance[i] = mean * (u < 0.25 ? 4.0f : 0.0f);
+    }
+    join();
+  }
+
+  void join() {
+    Planes& now = planes[taken % 2];
+    each([&](int x, int y) {
+      const size_t i = picture.index(x, y);
+      RayCone cone;
+      const Ray ray = camera_ray(picture.camera, static_cast<float>(x) + 0.5f,
+                                 static_cast<float>(y) + 0.5f, 0, &cone);
+      now.part[i] = 1;
+      now.normal[i] = {0, 0, 1};
+      now.distance[i] = -ray.o.z / ray.d.z;
+    });
+    picture.radiance = radiance.data();
+    picture.albedo = albedo.data();
+    picture.motion = motion.data();
+    picture.scene_flow = scene_flow.data();
+    picture.now = now.view();
+    picture.before = planes[(taken + 1) % 2].view();
+    picture.has_before = taken > 0;
+    picture.color = color.data();
+    each([&](int x, int y) { temporal::accumulate(picture, x, y); });
+    each([&](int x, int y) { temporal::settle(picture, x, y); });
+    each([&](int x, int y) { temporal::compose(picture, x, y); });
+    ++taken;
+  }
+
+  template <class F>
+  static void each(const F& f) {
+    for (int y = 0; y < kHeight; ++y)
+      for (int x = 0; x < kWidth; ++x) f(x, y);
+  }
+  Vec3f mean() const {
+    Vec3f sum;
+    for (const Vec3f& c : color) sum += c;
+    return sum / static_cast<float>(kPixels);
+  }
+  Planes& last() { return planes[(taken + 1) % 2]; }
+};
+
+TEST(Temporal, LightThatRestsConvergesToItsMean) {
+  Floor floor;
+  for (int i = 0; i < 120; ++i) floor.take({10, 20, 5});
+  const Vec3f mean = floor.mean();
+  EXPECT_NEAR(mean.x, 10, 0.2);
+  EXPECT_NEAR(mean.y, 20, 0.4);
+  EXPECT_NEAR(mean.z, 5, 0.1);
+  double worst = 0;
+  for (const Vec3f& c : floor.color) worst = std::max(worst, std::fabs(double{c.y} / 20 - 1));
+  EXPECT_LT(worst, 0.9);  // a single picture: 3
+  EXPECT_EQ(floor.last().age[0], temporal::kMostAge);
+}
+
+TEST(Temporal, HistoryGoesWithTheMotion) {
+  Floor floor;
+  floor.take({10, 10, 10});
+  const std::vector<Vec3f> before = floor.last().recent;
+  // The camera shifts by two pixels of the floor to the left: what it sees goes to the right.
+  floor.picture.camera.pose.X_WC_open.p.x -= 0.2f;
+  for (Vec2f& m : floor.motion) m = {2, 0};
+  floor.take({0, 0, 0});
+  for (int y = 0; y < kHeight; ++y) {
+    for (int x = 0; x < kWidth; ++x) {
+      const size_t i = floor.picture.index(x, y);
+      ASSERT_EQ(floor.last().age[i], x < 2 ? 1.0f : 2.0f) << x << " " << y;
+      if (x >= 2) {
+        ASSERT_NEAR(floor.last().recent[i].x, 0.5f * before[i - 2].x, 1e-3f);
+      }
+    }
+  }
+}
+
+TEST(Temporal, OtherSurfacesAreRefused) {
+  for (const int how : {0, 1, 2}) {
+    Floor floor;
+    for (int i = 0; i < 4; ++i) floor.take({10, 10, 10});
+    Planes& old = floor.last();
+    const size_t i = floor.picture.index(5, 5);
+    if (how == 0) old.part[i] = 2;
+    if (how == 1) old.normal[i] = {1, 0, 0};
+    if (how == 2) old.distance[i] = 1.5f;
+    floor.take({10, 10, 10});
+    EXPECT_EQ(floor.last().age[i], 1) << how;
+    EXPECT_EQ(floor.last().age[i + 1], 5) << how;
+  }
+}
+
+TEST(Temporal, ChangedLightIsFollowedSoonerThanByTheMeanAlone) {
+  Floor floor;
+  for (int i = 0; i < 100; ++i) floor.take({10, 10, 10});
+  for (int i = 0; i < 16; ++i) floor.take({1, 1, 1});
+  const double mean_alone = 1 + 9 * std::pow(1 - 1 / double{temporal::kMostAge}, 16);  // 7.4
+  EXPECT_LT(floor.mean().x, 0.5 * mean_alone);
+}
+
+TEST(Temporal, WhatIsNoLightIsBlack) {
+  Floor floor;
+  for (const float bad : {NAN, INFINITY, -1.0f}) {
+    floor.take({10, 10, 10});
+    floor.radiance[7] = {bad, 1, 1};
+    floor.join();
+    EXPECT_TRUE(std::isfinite(floor.color[7].x)) << bad;
+    EXPECT_GE(floor.color[7].x, 0) << bad;
+  }
+}
+
+}  // namespace
+}  // namespace gloam
