@@ -36,7 +36,7 @@ SLOW = [
 ]
 FULL = [
     "Adaptive.HasTheMeanOfEvenSampling",
-    "Fast.CellsLookForLightWhereTheGuideHasFoundIt",
+    "Interactive.CellsLookForLightWhereTheGuideHasFoundIt",
     "InteractiveMedia.FlamesLightTheRoomAsInThePathTier",
     "InteractiveMedia.SmokeIsLitAsByThePathTier",
     "InteractiveMedia.WallsKeepTheLightOfFogOutside",
@@ -52,7 +52,7 @@ FULL = [
     "GeneratorRanges.AreSoundInside",
     "MeshParts.OfThinAndThickThings",
     "MjcfSpec.SettingAfterwardsIsTheSameAsWritingItInTheFile",
-    "MovingLight.TheFastTierFollowsABeacon",
+    "MovingLight.TheInteractiveTierFollowsABeacon",
     "Stills.PartsAndObjectsBeyond16BitsAreToldApart",
     "ThirdParty.EveryFileThatStockLoadsRoundTrips",
 ]

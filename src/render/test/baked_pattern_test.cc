@@ -142,11 +142,11 @@ TEST(BakedPattern, WhereMemoryIsShortDetailRepeats) {
     Patterned patterned(c.d, ShapeType::kPlane, {half, half, 1});
     PatternBaking& baking = patterned.scene.description.pattern_baking;
     baking.metres_per_texel = 0.05f * c.unit;
-    baking.most_bytes = 4 << 20;
+    baking.most_bytes = 2 << 20;
     const PatternStore store = patterned.bake();
     const Errors e =
         errors_of(store, c.d, footprint, [&](int i, Vec3f* n) { return on_top(half, i, n); });
-    EXPECT_LT(e.mean, 0.15 * e.albedo_spread + 2e-3);
+    EXPECT_LT(e.mean, 0.2 * e.albedo_spread + 2e-3);
     EXPECT_NEAR(e.baked_spread, e.albedo_spread, 0.3 * e.albedo_spread + 2e-3);
   }
 }

@@ -1,5 +1,5 @@
 #pragma once
-// Functions of the interactive stage that its files share: fast_gather.cc compiles them.
+// Functions of the interactive stage that its files share: gather_lanes.cc compiles them.
 
 #include "render/cpu/tracer/cpu_tracer.h"
 #include "render/kernel/interactive/gather.h"

@@ -81,43 +81,56 @@ struct MapLevel {
     sum->add(eval_procedural(*order.pattern, at), -weight);
   }
 
-  /// What the mean over the pattern is above that over the map. It is not zero where units differ
-  /// of which the map has few.
-  Difference missing_mean() const {
-    constexpr int kPlaces = 512;
+  /// Mean over the pattern, which is not zero where its units differ much.
+  Difference mean_of_pattern() const {
+    constexpr int kPlaces = 1024;
     constexpr float kRegion = 50;  // [m]
     const RandomStream stream{order.pattern->seed, stream_id("pattern detail")};
     Difference out;
     for (int i = 0; i < kPlaces; ++i) {
       const Philox4 d = stream.draw(0, static_cast<uint32_t>(i));
-      const Vec3f x{uniform_float(d.v[0]), uniform_float(d.v[1]), uniform_float(d.v[2])};
-      add(x * kRegion, 1.0f / kPlaces, &out);
-      add({x.x * period.x, x.y * period.y, kAcross}, -1.0f / kPlaces, &out);
+      add({uniform_float(d.v[0]) * kRegion, uniform_float(d.v[1]) * kRegion, 0}, 1.0f / kPlaces,
+          &out);
     }
     return out;
   }
 
-  /// The texel at (i, j). Near the low borders the map fades to what follows its high ones.
-  BakedTexel at(int i, int j, const Difference& missing) const {
+  /// What the texel at (i, j) shows. Near the low borders the map fades to what follows its high
+  /// ones.
+  Difference at(int i, int j) const {
     constexpr float kBorder = 1.0f / 12;
     const float x = static_cast<float>(i) / static_cast<float>(side),
                 y = static_cast<float>(j) / static_cast<float>(side);
     const float here_x = smooth_step(0, kBorder, x), here_y = smooth_step(0, kBorder, y);
-    Difference sum = missing;
-    sum.sample.relief = {};
+    Difference sum;
     for (int k = 0; k < 4; ++k) {
       const float weight =
           ((k & 1) != 0 ? 1 - here_x : here_x) * ((k & 2) != 0 ? 1 - here_y : here_y);
       if (weight <= 0) continue;
       add({(x + static_cast<float>(k & 1)) * period.x, (y + static_cast<float>(k >> 1)) * period.y,
-           kAcross},
+           0},
           weight, &sum);
     }
-    const Vec3f slope = baking::along_face(sum.sample.relief.gradient, face);
-    return pack_difference(sum.sample, slope.x, slope.y);
+    return sum;
   }
 
-  static constexpr float kAcross = 0.37f;  ///< any place [m]
+  /// All texels. A map has few units: its mean is brought to the pattern's.
+  void bake(BakedTexel* texels) const {
+    std::vector<Difference> all(static_cast<size_t>(side) * static_cast<size_t>(side));
+    parallel_for("pattern detail", side, [&](int64_t row) {
+      for (int i = 0; i < side; ++i)
+        all[static_cast<size_t>(row * side + i)] = at(i, static_cast<int>(row));
+    });
+    Difference missing = mean_of_pattern();
+    for (const Difference& texel : all)
+      missing.add(texel.sample, -1.0f / static_cast<float>(all.size()));
+    missing.sample.relief = {};
+    for (size_t i = 0; i < all.size(); ++i) {
+      all[i].add(missing.sample, 1);
+      const Vec3f slope = baking::along_face(all[i].sample.relief.gradient, face);
+      texels[i] = pack_difference(all[i].sample, slope.x, slope.y);
+    }
+  }
 };
 
 }  // namespace
@@ -147,14 +160,9 @@ BakedDetail bake_detail(const DetailOrder& order, std::vector<BakedTexel>* texel
     for (int level = 0; level < out.levels; ++level) {
       const int side = order.side >> level;
       const MapLevel map{order, period, 2 * axis, side};
-      const Difference missing = map.missing_mean();
       const size_t begin = texels->size();
       texels->resize(begin + static_cast<size_t>(side) * static_cast<size_t>(side));
-      parallel_for("pattern detail", side, [&](int64_t row) {
-        const int j = static_cast<int>(row);
-        for (int i = 0; i < side; ++i)
-          (*texels)[begin + static_cast<size_t>(j * side + i)] = map.at(i, j, missing);
-      });
+      map.bake(texels->data() + begin);
     }
   }
   return out;

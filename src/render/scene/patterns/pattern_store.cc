@@ -28,7 +28,7 @@ class Tiles {
  public:
   /// Chooses texels and lists the tiles, within the budget.
   Tiles(const PatternBaking& baking, std::span<PatternSurface> surfaces) {
-    constexpr double kPart = 0.25;  // of the memory: maps of detail show what is too fine for it
+    constexpr double kPart = 0.4;  // of the memory: maps of detail show what is too fine for it
     const double most = kPart * static_cast<double>(baking.most_bytes) /
                         (baking::kTileTexels * sizeof(BakedTexel) + 2 * sizeof(BakedSlot));
     // The estimate may be short of what borders take.

@@ -28,7 +28,7 @@ Limits limits_of(const PatternSurface& s, float relax) {
   // Keys of cubes have room for so many; far layers must not fall into one cube.
   const float cubes = static_cast<float>((1 << baking::kCubesLog2) - 2);
   return {max(size.x, max(size.y, size.z)) / (static_cast<float>(baking::kSide) * cubes),
-          relax * max(0.064f, 0.002f * std::sqrt(s.area))};
+          relax * max(0.064f, 0.004f * std::sqrt(s.area))};
 }
 
 /// Index of the width at which what the surface loses and `price` per tile come to the least.

@@ -1,4 +1,4 @@
-#include "render/cuda/device_lidar.h"
+#include "render/cuda/lidar/device_lidar.h"
 
 #include <algorithm>
 

@@ -4,7 +4,7 @@
 #include <span>
 
 #include "render/cuda/parcel.h"
-#include "render/cuda/scan_kernels.h"
+#include "render/cuda/lidar/scan_kernels.h"
 #include "render/lidar_view.h"
 
 namespace gloam::cuda {

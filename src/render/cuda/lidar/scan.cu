@@ -1,5 +1,5 @@
 // Kernel of LiDARs: a beam a thread.
-#include "render/cuda/scan_kernels.h"
+#include "render/cuda/lidar/scan_kernels.h"
 #include "render/kernel/lidar/lidar.h"
 
 namespace gloam::cuda {
