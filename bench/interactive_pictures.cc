@@ -6,11 +6,11 @@
 //                 [--seed N] [--denoise] [--references FOLDER]
 //
 // CAMERA is one of the scene's, or FROM..TO: the free camera on its way from one to the other.
-// Writes OUT/interactive_I.png and OUT/path_I.png for the frames I, J … (default: the last), and prints
-// "frame I mean R G B / R G B" with the mean radiance of the interactive and the path tier [cd/m²].
-// The path tier's picture is the mean of two with half of the samples each, half_0_I.png and
-// half_1_I.png, which tell how much noise is left in it. With --denoise the two are denoised, which
-// keeps their means. In FOLDER they are kept for the next time.
+// Writes OUT/interactive_I.png and OUT/path_I.png for the frames I, J … (default: the last), and
+// prints "frame I mean R G B / R G B" with the mean radiance of the interactive and the path tier
+// [cd/m²]. The path tier's picture is the mean of two with half of the samples each, half_0_I.png
+// and half_1_I.png, which tell how much noise is left in it. With --denoise the two are denoised,
+// which keeps their means. In FOLDER they are kept for the next time.
 
 #include <fmt/format.h>
 
@@ -133,7 +133,8 @@ Status compare(const Options& options, const Studio& studio, const std::string& 
   GLOAM_TRY(const auto halves, references(studio, options.spp, options.references, name));
   Radiance path = halves[0];
   for (size_t k = 0; k < path.size(); ++k) path[k] = 0.5f * (path[k] + halves[1][k]);
-  GLOAM_TRY_STATUS(write_picture(options, fmt::format("interactive_{}", frame), interactive, ev100));
+  GLOAM_TRY_STATUS(
+      write_picture(options, fmt::format("interactive_{}", frame), interactive, ev100));
   GLOAM_TRY_STATUS(write_picture(options, fmt::format("path_{}", frame), path, ev100));
   for (size_t k = 0; k < 2; ++k)
     GLOAM_TRY_STATUS(write_picture(options, fmt::format("half_{}_{}", k, frame), halves[k], ev100));

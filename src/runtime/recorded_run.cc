@@ -186,10 +186,11 @@ RunInfo run_info(const World& world, const RunRequest& request, bool has_media, 
   info.seed = request.simulation.seed;
   info.timestep = timestep;
   info.duration = duration;
-  info.settings = {{"tier", scene.render.tier_or_default(request.simulation.pace == Pace::kRealTime)},
-                   {"spp", std::to_string(scene.render.samples())},
-                   {"max_depth", std::to_string(path_depth(scene.render, has_media))},
-                   {"denoise", scene.render.denoise ? "true" : "false"}};
+  info.settings = {
+      {"tier", scene.render.tier_or_default(request.simulation.pace == Pace::kRealTime)},
+      {"spp", std::to_string(scene.render.samples())},
+      {"max_depth", std::to_string(path_depth(scene.render, has_media))},
+      {"denoise", scene.render.denoise ? "true" : "false"}};
   for (const DrawnOption& d : world.compiled()->drawn) info.drawn.push_back({d.option, d.value});
   if (scene.render.error)
     info.settings.push_back({"error", fmt::format("{}", *scene.render.error)});

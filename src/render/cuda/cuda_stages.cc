@@ -8,9 +8,9 @@
 
 #include "render/cuda/cuda_history.h"
 #include "render/cuda/device_film.h"
-#include "render/cuda/lidar/device_lidar.h"
 #include "render/cuda/device_scene.h"
 #include "render/cuda/finisher.h"
+#include "render/cuda/lidar/device_lidar.h"
 #include "render/cuda/stream.h"
 #include "render/cuda/wavefront.h"
 

@@ -3,8 +3,8 @@
 
 #include <span>
 
-#include "render/cuda/parcel.h"
 #include "render/cuda/lidar/scan_kernels.h"
+#include "render/cuda/parcel.h"
 #include "render/lidar_view.h"
 
 namespace gloam::cuda {
