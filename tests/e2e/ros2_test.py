@@ -14,7 +14,8 @@ from e2e.ros2_env import ros2_env
 from e2e.support import PROGRAM, ROOT
 
 DEMO = ROOT / "examples" / "demo.toml"
-SMALL = ["--set", "camera.chase.width=64", "--set", "camera.chase.height=48"]
+# The direct tier: the first image of each camera in the interactive tier takes seconds on two cores.
+SMALL = ["--set", "camera.chase.width=64", "--set", "camera.chase.height=48", "--tier", "direct"]
 PROBE = Path(__file__).resolve().parent / "ros2_probe.py"
 # The domains of a run of tests do not meet those of another, most likely; ports of domains above 101 are ephemeral ones on Linux.
 DOMAINS = iter(range(1 + os.getpid() % 80, 1 + os.getpid() % 80 + 20))
