@@ -58,20 +58,23 @@ std::pair<int, int> size_of(const CameraRequest& request, const World& world) {
   return {0, 0};
 }
 
-/// Makes a picture soon of a request for one that takes long: a quarter of its width, and path
-/// traced, since the interactive tier takes seconds to fill its cache before it shows anything.
-/// False: it takes not long, or so much that it must be tried as it is, so that a lack of memory
-/// does not show later.
+/// Replaces a request for a slow picture by a preview: path traced, since the interactive tier
+/// fills its cache of light before its first picture, and a quarter as wide unless it is small.
+/// Returns false where the request is fast already, or so large that it must be tried as it is, so
+/// that a lack of memory does not show later.
 bool make_preview(const World& world, CameraRequest* request) {
   constexpr int kFraction = 4;
   constexpr int64_t kMostPixels = int64_t{16} << 20;
   const auto [width, height] = size_of(*request, world);
   const int64_t pixels = int64_t{width} * height;
   const bool is_small = pixels > 0 && pixels <= kSmallWidth * kSmallHeight;
-  if ((is_small && request->render.tier != "interactive") || pixels > kMostPixels) return false;
-  request->width = pixels > 0 ? std::max(width / kFraction, 1) : kSmallWidth;
-  request->height = pixels > 0 ? std::max(height / kFraction, 1) : kSmallHeight;
-  if (request->render.tier == "interactive") request->render.tier = "path";
+  const bool fills_cache = request->render.tier == "interactive";
+  if ((is_small && !fills_cache) || pixels > kMostPixels) return false;
+  if (!is_small) {
+    request->width = pixels > 0 ? std::max(width / kFraction, 1) : kSmallWidth;
+    request->height = pixels > 0 ? std::max(height / kFraction, 1) : kSmallHeight;
+  }
+  if (fills_cache) request->render.tier = "path";
   request->render.error.reset();
   request->render.spp = std::min(request->render.samples(), kPreviewSamples);
   return true;

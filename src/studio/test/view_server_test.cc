@@ -24,8 +24,8 @@ namespace {
 using namespace studio;
 using nlohmann::json;
 
-/// Small pictures: the made-up renderer is slow.
-ViewOptions small() { return {.port = 0, .width = 64, .height = 48}; }
+/// Small pictures, since the made-up renderer is slow, in a tier that needs no preview of them.
+ViewOptions small() { return {.port = 0, .render = {.tier = "path"}, .width = 64, .height = 48}; }
 
 /// Waits until something happens on another thread.
 bool eventually(const std::function<bool()>& holds, double seconds = 5) {
@@ -165,22 +165,36 @@ int width_of(const std::string& picture) {
   return 256 * static_cast<uint8_t>(picture[frame + 7]) + static_cast<uint8_t>(picture[frame + 8]);
 }
 
-TEST(ViewPreview, ASmallPictureComesBeforeTheFirst) {
+/// Widths of the first pictures of a server that shows pictures of `width` by `height`, and the
+/// cameras that it opened for them.
+std::pair<std::vector<int>, std::vector<std::string>> first_widths(ViewOptions options) {
   FakeSimulation simulation;
-  const auto server = ViewServer::start(simulation, {.port = 0, .width = 320, .height = 240});
-  ASSERT_TRUE(server.ok());
+  const auto server = ViewServer::start(simulation, options);
+  if (!server.ok()) return {};
   const std::string url = (*server)->url();
   RawClient client((*server)->port());
-  ASSERT_EQ(client.upgrade("Host: localhost\r\nAuthorization: token " +
-                           url.substr(url.find("token=") + 6) + "\r\n"),
-            101);
+  if (client.upgrade("Host: localhost\r\nAuthorization: token " +
+                     url.substr(url.find("token=") + 6) + "\r\n") != 101)
+    return {};
   std::vector<int> widths;
-  while (widths.empty() || widths.back() < 320) {
+  for (int i = 0; i < 2; ++i) {
     const auto picture = client.wait_for_picture();
-    ASSERT_TRUE(picture.has_value());
-    widths.push_back(width_of(*picture));
+    widths.push_back(picture ? width_of(*picture) : 0);
   }
-  EXPECT_EQ(widths.front(), 80);
+  return {widths, simulation.calls()};
+}
+
+TEST(ViewPreview, ASmallPictureComesBeforeTheFirst) {
+  const auto [widths, calls] =
+      first_widths({.port = 0, .render = {.tier = "path"}, .width = 320, .height = 240});
+  EXPECT_EQ(widths, (std::vector<int>{80, 320}));
+}
+
+TEST(ViewPreview, APathTracedPictureComesBeforeTheFirstInteractiveOne) {
+  const auto [widths, calls] =
+      first_widths({.port = 0, .render = {.tier = "interactive"}, .width = 64, .height = 48});
+  EXPECT_EQ(widths, (std::vector<int>{64, 64}));
+  EXPECT_EQ(std::count(calls.begin(), calls.end(), "open free"), 2);
 }
 
 TEST_F(ViewTest, PicturesAreNewAndInOrder) {
