@@ -1,5 +1,5 @@
-// What adaptive sampling reaches: the true error of its pictures, from renders that differ in their
-// seed alone, against the error asked for; and how many times the samples an even picture needs for
+// Accuracy of adaptive sampling: the true error of its pictures, from renders that differ only in
+// their seed, against the requested error; and the ratio of samples that uniform sampling needs for
 // the same error.
 //   adaptive_error [--error E] [--spp MOST] [--size WxH] [--seeds N] [--scene NAME] [--json]
 //     [--pictures FOLDER]

@@ -1,4 +1,4 @@
-// What each level of adversity costs sensors: visibility, illuminance, contrast of a camera and the
+// Effect of each level of adversity on sensors: visibility, illuminance, contrast of a camera and
 // returns of a LiDAR at one place of each kind of environment (the table of docs/weather.md).
 //
 //   adversity [--seed N] [--spp N] [--json]

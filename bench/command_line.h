@@ -1,5 +1,5 @@
 #pragma once
-// What the measurement programs read of their command lines: "--name value", "--name" and words.
+// Command lines of the measurement programs: "--name value", "--name" and words.
 
 #include <algorithm>
 #include <cstdio>

@@ -1,6 +1,6 @@
-// What effects cost: CPU time of the thread that steps, and pictures of the interactive tier, of a
-// scene with its gases, fires, smokes, rotors, dust, weather, waters and soils against the same
-// scene without any. People stay in both: they are no effect, and have a bar of their own.
+// Cost of effects: CPU time of the stepping thread, and of pictures of the interactive tier, for a
+// scene with its gases, fires, smokes, rotors, dust, weather, waters and soils, relative to the
+// same scene without them. Both scenes keep their people, which have a requirement of their own.
 //
 //   effects_cost SCENE CAMERA [--at S] [--blocks N] [--pictures N] [--size WxH] [--each] [--json]
 //
@@ -77,7 +77,7 @@ struct Stepping {
   }
 };
 
-/// What takes pictures of one world.
+/// A simulation and a camera that takes pictures of it.
 struct Filming {
   std::unique_ptr<LiveSimulation> simulation;
   std::unique_ptr<PoseSolver> solver;

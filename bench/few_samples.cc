@@ -1,6 +1,6 @@
-// Light of a scene by few samples: mean radiance of pictures of the path tier, denoised,
-// and of the interactive tier, against that of many samples, which are not denoised; and how much
-// the pictures of an instant differ from one another.
+// Mean radiance of pictures with few samples, of the path tier (denoised) and of the interactive
+// tier, relative to pictures with many samples (not denoised); and the spread between pictures of
+// the same instant.
 //
 //   few_samples SCENE… [--time S] [--size WxH] [--spp N] [--seeds N] [--pictures FOLDER] [--json]
 

@@ -40,19 +40,18 @@ class Scenes:
     camera: str
     of: dict  # by scene: samples of a reference's pixel; the pictures that are compared, of which --quick takes the second
     seeds: int  # of the interactive tier
-    denoise: bool  # the references
     bars: dict
 
 
 SETS = {
     # The first picture, one in motion, one later. A reference takes seconds on an NVIDIA card, up to 20 minutes on two cores.
     "small": Scenes("interactive_scenes", "view", {"moving_lamp": (8192, (0, 8, 20)), "closing_door": (8192, (0, 6, 20)), "running_robot": (8192, (0, 10, 20)),
-                                            "glass_and_mirrors": (8192, (0, 8, 20)), "yard": (8192, (0, 8, 20))}, 8, False, {MEAN: 0.08, P95: 0.25}),
+                                            "glass_and_mirrors": (8192, (0, 8, 20)), "yard": (8192, (0, 8, 20))}, 8, {MEAN: 0.08, P95: 0.25}),
     # After a few pictures and after a second of motion. A reference takes 1 to 20 s on an NVIDIA card, up to 10 minutes on two cores.
     "realistic": Scenes("realistic_scenes", "from..to",
                         {scene: (1024, (4, 20)) for scene in ("demo_room", "plain_room", "house", "house_2", "bedroom", "office", "tunnel", "terrain",
                                                               "warehouse", "rain", "adversity_house", "adversity_warehouse")},
-                        1, False, {MEAN: 0.08, RADIANCE: 5}),
+                        1, {MEAN: 0.08, RADIANCE: 5}),
 }
 
 
@@ -62,9 +61,9 @@ def picture(path):
 
 def compare(scenes, scene, at, seed, samples, folder):
     """A row per frame: mean and 95th percentile of FLIP, its mean between the path tier's halves, radiance of both (R G B each)."""
-    command = [os.environ.get("BIP", BIN / "bench_interactive_pictures"), ROOT / "bench" / scenes.folder / f"{scene}.toml", scenes.camera, folder,
+    command = [BIN / "bench_interactive_pictures", ROOT / "bench" / scenes.folder / f"{scene}.toml", scenes.camera, folder,
                "--frames", str(max(at) + 1), "--at", ",".join(map(str, at)), "--seed", str(seed), "--spp", str(samples),
-               "--references", ROOT / ".cache" / "interactive_references", *(["--denoise"] if scenes.denoise else [])]
+               "--references", ROOT / ".cache" / "interactive_references"]
     result = subprocess.run(command, capture_output=True, text=True)
     if result.returncode != 0:
         sys.exit(f"{scene}: {(result.stderr or result.stdout).strip()}")
@@ -75,8 +74,8 @@ def compare(scenes, scene, at, seed, samples, folder):
         noise = flip(*(picture(f"{folder}/half_{half}_{frame}.png") for half in (0, 1))).mean()
         strip = np.concatenate([path, interactive, np.repeat(error[..., None], 3, -1)], 1)
         Image.fromarray((strip * 255).astype(np.uint8)).save(f"{folder}/{scene}_{frame}.png")
-        of_fast, of_path = (list(map(float, part.split())) for part in line.split("mean")[1].split("/"))
-        rows.append([error.mean(), np.percentile(error, 95), noise, *of_fast, *of_path])
+        of_interactive, of_path = (list(map(float, part.split())) for part in line.split("mean")[1].split("/"))
+        rows.append([error.mean(), np.percentile(error, 95), noise, *of_interactive, *of_path])
     return rows
 
 

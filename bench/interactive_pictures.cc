@@ -1,16 +1,15 @@
 // Pictures of the interactive tier, taken one after the other as a live camera does, and of the
 // path tier at the same instants, for bench/interactive_error.py to compare.
 //
-//   interactive_pictures SCENE CAMERA OUT [--size WxH] [--rate HZ] [--frames N] [--at I,J …] [--spp
-//   N]
-//                 [--seed N] [--denoise] [--references FOLDER]
+//   interactive_pictures SCENE CAMERA OUT [--size WxH] [--rate HZ] [--frames N] [--at I,J …]
+//                 [--spp N] [--seed N] [--references FOLDER]
 //
 // CAMERA is one of the scene's, or FROM..TO: the free camera on its way from one to the other.
 // Writes OUT/interactive_I.png and OUT/path_I.png for the frames I, J … (default: the last), and
 // prints "frame I mean R G B / R G B" with the mean radiance of the interactive and the path tier
 // [cd/m²]. The path tier's picture is the mean of two with half of the samples each, half_0_I.png
-// and half_1_I.png, which tell how much noise is left in it. With --denoise the two are denoised,
-// which keeps their means. In FOLDER they are kept for the next time.
+// and half_1_I.png, which tell how much noise is left in it. It is not denoised: a filter
+// would change it. In FOLDER references are kept for the next time.
 
 #include <fmt/format.h>
 
@@ -36,8 +35,7 @@ namespace {
 struct Options {
   std::string model, camera, out, references;
   int width = 320, height = 240, rate = 20, frames = 20, spp = 512;
-  int seed = 1;          ///< of the interactive tier
-  bool denoise = false;  ///< the path tier's
+  int seed = 1;  ///< of the interactive tier
   std::set<int> at;
 };
 
@@ -66,11 +64,11 @@ struct Studio {
   }
 };
 
-/// What tells a scene's references apart from others. The path tier has no bias, so they stay true
-/// while its samples change.
+/// Key of a scene's references on disk. The path tier is unbiased, so that a reference stays valid
+/// when its sampling changes.
 Result<uint64_t> key_of(const Options& options, const MovingScene& scene) {
   GLOAM_TRY(const std::vector<uint8_t> text, read_file(options.model));
-  const int taken[] = {options.width, options.height, options.rate, options.spp, options.denoise};
+  const int taken[] = {options.width, options.height, options.rate, options.spp};
   const uint64_t place = scene.simulation->world().compiled()->place_hash;
   const uint64_t camera = hash_bytes(options.camera.data(), options.camera.size(), place);
   return hash_span(std::span<const uint8_t>(text), hash_span(std::span<const int>(taken), camera));
@@ -159,8 +157,7 @@ Status run(const Options& options) {
             CameraSensor::create(shared.description, request, static_cast<uint64_t>(options.seed)));
   request.render.tier = "path";
   request.render.error.reset();
-  // Without --denoise: a filter would move what is to be told from the interactive tier's.
-  request.render.denoise = options.denoise;
+  request.render.denoise = false;
   Studio studio{*scene, request};
   GLOAM_TRY(const uint64_t key, key_of(options, *scene));
   const std::string stem = std::filesystem::path(options.model).stem().string();
@@ -189,7 +186,6 @@ int main(int argc, char** argv) {
   line.value("--frames", &options.frames);
   line.value("--spp", &options.spp);
   line.value("--seed", &options.seed);
-  options.denoise = line.flag("--denoise");
   line.value("--references", &options.references);
   std::string frames;
   line.value("--at", &frames);
@@ -199,7 +195,7 @@ int main(int argc, char** argv) {
   if (words.size() != 3) {
     fmt::print(stderr,
                "usage: interactive_pictures SCENE CAMERA OUT [--size WxH] [--rate HZ] [--frames N] "
-               "[--at I,J] [--spp N] [--seed N] [--denoise] [--references FOLDER]\n"
+               "[--at I,J] [--spp N] [--seed N] [--references FOLDER]\n"
                "CAMERA is a name or FROM..TO\n");
     return 2;
   }

@@ -46,7 +46,7 @@ struct TwoCameras {
   }
 };
 
-/// What one process tells another after a turn.
+/// Message from one process to the other after a turn.
 struct Report {
   double step_seconds = 0;  // CPU time of the thread that steps
   double all_seconds = 0;   // of the whole process

@@ -1,5 +1,5 @@
 #pragma once
-// What the step rate benches share: the model, its controls, the clock and the statistics.
+// Model, controls, clock and statistics of the benchmarks of step rates.
 
 #include <fmt/format.h>
 #include <time.h>

@@ -52,8 +52,8 @@ class ViewHistory {
   virtual ~ViewHistory() = default;
 };
 
-/// What a renderer makes of a picture's light before it hands it over: the same as a Denoiser and
-/// tone_map() do, without the way through the host's memory.
+/// Steps that a renderer applies to a picture's light before it returns the picture: the same as a
+/// Denoiser and tone_map(), without a copy through the host's memory.
 struct PictureFinish {
   bool denoise = false;     ///< Film::radiance is without noise, albedo and normal stay empty
   bool to_display = false;  ///< Film::rgb instead of Film::radiance

@@ -14,7 +14,7 @@ namespace gloam::cuda {
 
 class DeviceScene {
  public:
-  /// The host's tables of meshes have been made anew: forgets what it knows of them.
+  /// Forgets all tables on the device, because the host has rebuilt its tables of meshes.
   void forget() { kept_.clear(); }
   /// Sets picture->scene, camera, clip and tracer, with pointers of the card's. The copy has been
   /// made when the stream has come so far;

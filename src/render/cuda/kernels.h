@@ -27,7 +27,7 @@ struct DeviceFilm {
   unsigned long long* rays = nullptr;  ///< one number: traced so far
 };
 
-/// One picture of one world: everything that its pixels share. Pointers are the device's.
+/// Arguments of all kernels for one picture of one world. Pointers are device pointers.
 struct DevicePicture {
   SceneView scene;
   BvhTracer tracer;

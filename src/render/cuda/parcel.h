@@ -1,6 +1,6 @@
 #pragma once
-// What the host sends to the card for one picture or scan: laid out in pinned memory, and copied at
-// once.
+// Data that the host sends to the card for one picture or scan: laid out in pinned memory and sent
+// in one copy.
 
 #include <cstring>
 #include <type_traits>
@@ -12,7 +12,7 @@
 
 namespace gloam::cuda {
 
-/// What does not fit is only measured.
+/// Data that does not fit is counted, not stored.
 class Parcel {
  public:
   Parcel(char* host, char* device, size_t size) : host_(host), device_(device), size_(size) {}

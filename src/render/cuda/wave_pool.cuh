@@ -75,7 +75,7 @@ struct WavePool {
   WaveCounts* counts = nullptr;
 };
 
-/// What the kernels of one turn share.
+/// Arguments of all kernels of one turn.
 struct WaveTurn {
   WavePool pool;
   int turn = 0;
@@ -138,7 +138,7 @@ __device__ __forceinline__ void keep_lights(const SceneView& scene, const WavePo
 
 /// Surfaces of `sorted`: those of paths are kept, shadow rays go on behind theirs.
 void launch_wave_surfaces(const DevicePicture& p, const WaveTurn& w, Stream stream);
-/// What paths without media have met: light, and the surfaces to be evaluated.
+/// Sorts the ends of path segments without media: light, and surfaces to be evaluated.
 void launch_wave_arrive(const DevicePicture& p, const WaveTurn& w, Stream stream);
 /// Light and directions at the same surfaces, in the order of `met`.
 void launch_wave_scatter(const DevicePicture& p, const WaveTurn& w, Stream stream);

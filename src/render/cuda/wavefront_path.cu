@@ -55,7 +55,7 @@ __global__ void __launch_bounds__(kBlock)
   if (starts) pool.paths[0][append(&pool.counts->paths[0])] = slot;
 }
 
-/// What becomes of a shadow ray that has been traced. `hit`: null where no light can pass.
+/// Ends or continues a shadow ray that has been traced. `hit`: null where no light can pass.
 __device__ __forceinline__ void end_shadow(const DevicePicture& p, const WavePool& pool,
                                            uint32_t slot, bool found, const RayHit* hit) {
   const SceneView& scene = p.scene;

@@ -18,8 +18,7 @@ struct ObjectCover {
 
 struct Film {
   int width = 0, height = 0;
-  /// What RenderSettings::finish makes of the light for a display: 8-bit sRGB, (height x width x
-  /// 3).
+  /// Light as RenderSettings::finish prepares it for a display: 8-bit sRGB, (height x width x 3).
   std::vector<uint8_t> rgb;
   // Light; empty where no samples are asked for, or only `rgb`.
   std::vector<Vec3f> radiance;         ///< mean over samples, linear Rec. 709 [cd/m²]

@@ -64,7 +64,7 @@ class RenderScene {
     return description_.instances[instance].is_static &&
            !(in.shape == ShapeType::kMesh && is_height_field_[in.mesh]);
   }
-  /// Rows of the meshes that the last update made anew.
+  /// Rows of the meshes that the last update rebuilt.
   const std::vector<uint32_t>& rebuilt_meshes() const { return rebuilt_meshes_; }
 
  private:

@@ -65,7 +65,7 @@ inline Vec2f random_2d(uint32_t i, uint32_t k) {
   return {uniform_float(d.v[0]), uniform_float(d.v[1])};
 }
 
-/// What sample_bsdf makes against eval_bsdf, for a Bsdf or a LayeredBsdf.
+/// Directions of sample_bsdf compared with eval_bsdf, for a Bsdf or a LayeredBsdf.
 template <class B>
 void check_bsdf(const B& bsdf, Vec3f wo, const std::string& name) {
   check_directions(

@@ -361,7 +361,7 @@ TEST(Video, OddSizesAreExtendedAndImpossibleOnesRefused) {
   }
 }
 
-/// What a command prints; empty when it is not installed.
+/// Output of a command; empty if it is not installed.
 std::string output_of(const std::string& command) {
   std::string out;
   FILE* pipe = popen((command + " 2>/dev/null").c_str(), "r");

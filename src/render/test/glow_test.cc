@@ -80,7 +80,7 @@ TEST(Glow, PointsAreDrawnByTheirDensity) {
     ASSERT_NEAR(glow::pdf(media, glow, p, x, p_G), s.pdf, 1e-3f * s.pdf) << "draw " << i;
   }
   EXPECT_NEAR(drawn.mean, expected, 4 * drawn.standard_error() + 2e-3 * expected);
-  // What is left is that a voxel is not even, and that some are farther away.
+  // The remaining difference: a voxel is not homogeneous, and some voxels are farther away.
   EXPECT_LT(drawn.standard_error(), 1.0 / std::sqrt(100000.0) * expected);
 }
 

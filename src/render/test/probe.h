@@ -9,7 +9,7 @@
 
 namespace gloam {
 
-/// What a renderer of the scene traces with; `keeps_own`: our own BVH beside Embree.
+/// Tracer of a renderer of the scene; `keeps_own`: our own BVH beside Embree.
 inline TracedScene trace_scene(const SceneBuilder& builder, bool keeps_own = false) {
   auto scene = RenderScene::make(builder.description);
   GLOAM_CHECK(scene.ok(), "the test's scene is refused");

@@ -1,4 +1,4 @@
-// What the even spread of sample points is worth: noise of 16 samples against that of as many
+// Benefit of evenly spread sample points: noise of 16 samples against that of as many
 // independent ones.
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// What a camera passes: near planes, back faces, hidden things; by the CPU's tracers.
+// Geometry that a camera skips: near planes, back faces, hidden objects; with the CPU's tracers.
 
 #include <gtest/gtest.h>
 

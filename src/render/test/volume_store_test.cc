@@ -188,7 +188,7 @@ TEST(VolumeStore, ReplacesOneVolumeAsIfMadeAnew) {
   EXPECT_EQ(store.view().volumes[1].cells_y, 5);
   EXPECT_EQ(store.view().volumes[1].cells.size, 2u * 5 * 3);
 
-  // What is refused changes nothing.
+  // A rejected request changes nothing.
   const VolumeView before = store.view().volumes[1];
   VolumeDescription bad = turned;
   std::vector<float> values = *turned.density;

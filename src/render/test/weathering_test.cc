@@ -124,7 +124,7 @@ TEST(Weathering, SnowStartsInPatchesAndLeavesSteepFaces) {
   for (const float amount : {0.2f, 0.4f, 0.6f, 0.8f, 1.0f}) {
     EXPECT_GT(share(amount, kUp, 0), before);
     before = share(amount, kUp, 0);
-    // What is seen from afar is the share that lies there.
+    // From afar the camera sees the share that lies there.
     EXPECT_NEAR(share(amount, kUp, 5), before, 0.02) << amount;
   }
   EXPECT_GT(before, 0.99);

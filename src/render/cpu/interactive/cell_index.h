@@ -30,13 +30,6 @@ class CellIndex {
   void assign(const Cells& cells) {
     keys_.assign(keys_.size(), 0);
     count_ = 0;
-    for (const auto& cell : cells) set(slot_of(cell.key), cell.key, count_++);
-  }
-
-  /// Replaces all cells by as many as there are, which may be more than before.
-  template <class Cells>
-  void rebuild(const Cells& cells) {
-    *this = {};
     for (const auto& cell : cells) find_or_add(cell.key);
   }
 

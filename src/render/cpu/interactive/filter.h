@@ -15,7 +15,8 @@ struct InteractiveFilter {
   void resize(int width, int height);
   /// Blends in signals of the same places in `before`, as far as they agree with the new ones.
   void accumulate(const InteractiveFrame& before, InteractiveFrame* frame);
-  /// Smooths the signals over surfaces, that of the air over what is as far away.
+  /// Smooths the signals of surfaces over each surface, and the signal of the air over pixels of
+  /// similar distance.
   void smooth(const InteractiveFrame& frame);
   const InteractivePlane3& smoothed(InteractiveSignal signal) const {
     return signal == kCachedSignal ? a[signal] : b[signal];

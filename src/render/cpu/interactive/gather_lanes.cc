@@ -1,4 +1,4 @@
-
+// Gathering of light for several pixels at once: instances of the templates for SIMD lanes.
 #include "render/cpu/interactive/gather_lanes.h"
 
 namespace gloam::interactive {

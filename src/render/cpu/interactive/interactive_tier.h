@@ -1,5 +1,5 @@
 #pragma once
-// The interactive tier: what a camera remembers from picture to picture, and one picture more.
+// The interactive tier: the state that a camera keeps between pictures, and the next picture.
 
 #include <optional>
 
@@ -11,7 +11,7 @@
 
 namespace gloam {
 
-/// Inputs that all rays of one picture share.
+/// Inputs of all rays of one picture.
 struct InteractiveView {
   const SceneView& scene;
   const CpuTracer& tracer;

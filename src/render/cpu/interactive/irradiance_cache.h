@@ -48,7 +48,7 @@ class IrradianceCache {
     archive(light_changes_), archive(update_), archive(random_state_), archive(further_);
     excess_.visit(archive);
     starts_.resize(cells_.size() * kStarts);
-    index_.rebuild(cells_);
+    index_.assign(cells_);
   }
   size_t size() const { return cells_.size(); }
 

@@ -1,5 +1,5 @@
 #pragma once
-// The cells behind a LampCellsView: which there are, and which lamps they see.
+// The cells behind a LampCellsView, and the lamps that each cell sees.
 
 #include <vector>
 
@@ -11,14 +11,15 @@
 
 namespace gloam {
 
-/// Which lamps each cell sees past everything that never moves. What moves is left to shadow rays.
+/// Lists of the lamps that each cell sees past all static geometry. Shadow rays account for moving
+/// objects.
 class LampCache {
  public:
   /// Scenes with more lights have no lists.
   static constexpr uint32_t kMostLights = 1024;
 
-  /// Follows the scene's lights. Those that move from picture to picture are in no list; where
-  /// lights come, go or become brighter, all cells are forgotten.
+  /// Follows the scene's lights. Lights that move from picture to picture are in no list; when
+  /// lights appear, disappear or become brighter, the cache drops all cells.
   void follow(const SceneView& scene);
   /// Makes the requested cells, in order, where there are none yet.
   void ask(const std::vector<CacheRequest>& requests);
@@ -34,7 +35,7 @@ class LampCache {
   void visit(Archive& archive) {
     archive(cells_), archive(lists_), archive(update_);
     starts_.resize(cells_.size() * kStarts);
-    index_.rebuild(cells_);
+    index_.assign(cells_);
   }
   size_t size() const { return cells_.size(); }
 

@@ -1,6 +1,6 @@
 #pragma once
-// Change of the light since the picture before, by place in the picture. A mean over pictures lags
-// behind light that changes evenly; brought up to the new level first, it does not.
+// Change of the light since the previous picture, by place in the picture. A mean over pictures
+// lags behind light that changes evenly, unless the mean is scaled to the new level first.
 
 #include <cstdint>
 #include <span>
@@ -33,8 +33,8 @@ struct LightChange {
   const InteractivePlane3& now;
   LightGain* gain;
 };
-/// Compares luminances of the pixels with those of the same places before; of kSignals lights
-/// at most.
+/// Measures the ratio of each pixel's luminance to that of the same place in the previous picture,
+/// for at most kSignals lights.
 void measure_gains(const InteractiveFrame& before, const InteractiveFrame& now,
                    std::span<const LightChange> changes);
 

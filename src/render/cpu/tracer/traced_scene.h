@@ -22,7 +22,8 @@ class TracedScene {
   void update(std::span<const PoseFrame* const> keys, const PoseFrame& previous) {
     scene_->update(keys, previous);
     embree_is_behind_ = embree_ != nullptr;
-    // Only its next tracer tells whether Embree is used; meshes are made anew for one update.
+    // Whether Embree is used is known only when a tracer is requested, but rebuilt meshes are
+    // listed only until the next update.
     if (!keeps_own_ || !scene_->rebuilt_meshes().empty()) bring_embree_up();
     if (keeps_own_) own_.update(*scene_);
   }

@@ -59,7 +59,7 @@ GLOAM_HD Vec3f divisor(Vec3f albedo, uint32_t part) {
   return {max(albedo.x, kLeastColor), max(albedo.y, kLeastColor), max(albedo.z, kLeastColor)};
 }
 
-/// What a pixel of the picture before must show to be the same place.
+/// Surface that a pixel of the previous picture must show to be the same place.
 struct Sought {
   uint32_t part = 0;
   Vec3f normal;

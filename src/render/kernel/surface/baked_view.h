@@ -44,9 +44,9 @@ struct BakedTexel {
 };
 static_assert(sizeof(BakedTexel) == 16);
 
-/// What texels of a surface are too wide to show, as a map that repeats: the pattern at some other
-/// place, seen sharply, less what is seen of it there through the surface's texels. Its texels hold
-/// such differences, -1 to 1, as 0 to twice 32767 or 127.
+/// Repeating map of the detail that is finer than a surface's texels: the sharp pattern at some
+/// other place minus the pattern as the surface's texels show it there. Its texels store
+/// differences from -1 to 1 as 0 to twice 32767 or 127.
 struct BakedDetail {
   uint32_t first[3] = {};      ///< row of the first texel of the map for each axis
   int side = 0;                ///< texels along an edge, a power of two

@@ -95,8 +95,8 @@ struct MapLevel {
     return out;
   }
 
-  /// What the texel at (i, j) shows. Near the low borders the map fades to what follows its high
-  /// ones.
+  /// Value of the texel at (i, j). Near the low borders the map fades to the values that follow
+  /// its high borders.
   Difference at(int i, int j) const {
     constexpr float kBorder = 1.0f / 12;
     const float x = static_cast<float>(i) / static_cast<float>(side),

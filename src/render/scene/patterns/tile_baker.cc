@@ -12,11 +12,26 @@ namespace {
 
 constexpr int kMostSamples = (baking::kSide + 1) * (baking::kSide + 1);
 
-uint16_t wide(float x) { return static_cast<uint16_t>(clamp(x, 0.0f, 1.0f) * 65535.0f + 0.5f); }
-uint8_t narrow(float x) { return static_cast<uint8_t>(clamp(x, 0.0f, 1.0f) * 255.0f + 0.5f); }
 int16_t slope(float x) {
   const float t = std::sqrt(min(std::fabs(x) / baking::kSteepest, 1.0f)) * 32767.0f + 0.5f;
   return static_cast<int16_t>(x < 0 ? -std::floor(t) : std::floor(t));
+}
+
+/// A texel whose values `wide` encodes in 16 bits and `narrow` in 8.
+template <class Wide, class Narrow>
+BakedTexel pack(const ProceduralSample& s, Vec2f slopes, Wide wide, Narrow narrow) {
+  BakedTexel out;
+  out.red = wide(s.base_color.x);
+  out.green = wide(s.base_color.y);
+  out.blue = wide(s.base_color.z);
+  out.roughness = wide(s.roughness);
+  out.slope_u = slope(slopes.x);
+  out.slope_v = slope(slopes.y);
+  out.metallic = narrow(s.metallic);
+  out.coat_weight = narrow(s.coat_weight);
+  out.fuzz = narrow(s.fuzz);
+  out.mask = narrow(s.mask);
+  return out;
 }
 
 /// A tile's place: corner of its cube along_face() and edge [m].
@@ -102,18 +117,13 @@ BakedTexel sample_at(const PatternSurface& surface, const FacedTriangle& t, cons
 }  // namespace
 
 BakedTexel pack_texel(const ProceduralSample& s, float slope_u, float slope_v) {
-  BakedTexel out;
-  out.red = wide(s.base_color.x);
-  out.green = wide(s.base_color.y);
-  out.blue = wide(s.base_color.z);
-  out.roughness = wide(s.roughness);
-  out.slope_u = slope(slope_u);
-  out.slope_v = slope(slope_v);
-  out.metallic = narrow(s.metallic);
-  out.coat_weight = narrow(s.coat_weight);
-  out.fuzz = narrow(s.fuzz);
-  out.mask = narrow(s.mask);
-  return out;
+  const auto wide = [](float x) {
+    return static_cast<uint16_t>(clamp(x, 0.0f, 1.0f) * 65535.0f + 0.5f);
+  };
+  const auto narrow = [](float x) {
+    return static_cast<uint8_t>(clamp(x, 0.0f, 1.0f) * 255.0f + 0.5f);
+  };
+  return pack(s, {slope_u, slope_v}, wide, narrow);
 }
 
 BakedTexel pack_difference(const ProceduralSample& s, float slope_u, float slope_v) {
@@ -123,18 +133,7 @@ BakedTexel pack_difference(const ProceduralSample& s, float slope_u, float slope
   const auto narrow = [](float x) {
     return static_cast<uint8_t>(std::round(clamp(x, -1.0f, 1.0f) * 127.0f) + 127.0f);
   };
-  BakedTexel out;
-  out.red = wide(s.base_color.x);
-  out.green = wide(s.base_color.y);
-  out.blue = wide(s.base_color.z);
-  out.roughness = wide(s.roughness);
-  out.slope_u = slope(slope_u);
-  out.slope_v = slope(slope_v);
-  out.metallic = narrow(s.metallic);
-  out.coat_weight = narrow(s.coat_weight);
-  out.fuzz = narrow(s.fuzz);
-  out.mask = narrow(s.mask);
-  return out;
+  return pack(s, {slope_u, slope_v}, wide, narrow);
 }
 
 void bake_tile(const PatternSurface& surface, std::span<const CubeTriangle> triangles,
