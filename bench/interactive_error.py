@@ -3,12 +3,12 @@
     python3 bench/interactive_error.py [--set small|realistic] [--quick] [--only NAMES] [--seeds N] [--samples N] [--keep FOLDER] [--json]
 
 Each scene runs at 20 pictures a second; at some of them the path tier takes the same instant with many samples, which
-are kept in .cache/interactive_references until the scene's file or its generated place changes (remove them where the models
-it includes do, or their materials). Prints the mean and the 95th percentile per pixel of LDR-FLIP (bench/flip.py),
+are kept in .cache/interactive_references until the scene's file changes (remove them when the models it includes, their
+materials or its generators change). Prints the mean and the 95th percentile per pixel of LDR-FLIP (bench/flip.py),
 means over seeds of the interactive tier, the worst seed's mean, how much of it may be noise of the path tier's own pictures
 (two of them with half of the samples each differ by that), and how far the mean radiance is off, per channel. The set
 `small` has five small scenes; `realistic` has the twelve of bench/realistic_scenes, through which the camera moves, and
-references of 1024 samples. Needs numpy and Pillow.
+references of 2048 samples. Needs numpy and Pillow.
 """
 
 import argparse
@@ -47,9 +47,9 @@ SETS = {
     # The first picture, one in motion, one later. A reference takes seconds on an NVIDIA card, up to 20 minutes on two cores.
     "small": Scenes("interactive_scenes", "view", {"moving_lamp": (8192, (0, 8, 20)), "closing_door": (8192, (0, 6, 20)), "running_robot": (8192, (0, 10, 20)),
                                             "glass_and_mirrors": (8192, (0, 8, 20)), "yard": (8192, (0, 8, 20))}, 8, {MEAN: 0.08, P95: 0.25}),
-    # After a few pictures and after a second of motion. A reference takes 1 to 20 s on an NVIDIA card, up to 10 minutes on two cores.
+    # After a few pictures and after a second of motion. A reference takes 2 to 20 s on an NVIDIA card, up to 20 minutes on two cores.
     "realistic": Scenes("realistic_scenes", "from..to",
-                        {scene: (1024, (4, 20)) for scene in ("demo_room", "plain_room", "house", "house_2", "bedroom", "office", "tunnel", "terrain",
+                        {scene: (2048, (4, 20)) for scene in ("demo_room", "plain_room", "house", "house_2", "bedroom", "office", "tunnel", "terrain",
                                                               "warehouse", "rain", "adversity_house", "adversity_warehouse")},
                         1, {MEAN: 0.08, RADIANCE: 5}),
 }

@@ -42,6 +42,7 @@ TemporalPlanes CudaHistory::place(DeviceBuffer* buffer) const {
   const auto each = [&](DeviceLayout* layout) {
     layout->put(&out.light, n);
     layout->put(&out.recent, n);
+    layout->put(&out.noisy, n);
     layout->put(&out.age, n);
     layout->put(&out.distance, n);
     layout->put(&out.part, n);
@@ -54,14 +55,18 @@ TemporalPlanes CudaHistory::place(DeviceBuffer* buffer) const {
   return out;
 }
 
-void CudaHistory::add(const CameraView32& camera, DeviceFilm* film, Stream stream) {
+void CudaHistory::add(const CameraView32& camera, const Vec3f* noisy, DeviceFilm* film,
+                      Stream stream) {
   const size_t n = static_cast<size_t>(width_) * static_cast<size_t>(height_);
   TemporalPicture p;
   p.width = width_;
   p.height = height_;
   p.camera = camera;
   p.radiance = film->radiance;
-  p.albedo = film->albedo;
+  p.noisy = noisy;
+  p.albedo = film->center_albedo;
+  p.part = film->part;
+  p.clear = film->clear;
   p.motion = film->motion;
   p.scene_flow = film->scene_flow;
   p.before = place(&planes_[pictures_ % 2]);
@@ -69,12 +74,13 @@ void CudaHistory::add(const CameraView32& camera, DeviceFilm* film, Stream strea
   p.has_before = pictures_ > 0;
   p.weight = weight_;
   p.color = color_.reserve_of<Vec3f>(n);
+  p.blocks = blocks_.reserve_of<BlockLight>(static_cast<size_t>(p.block_columns()) *
+                                            static_cast<size_t>(p.block_rows()));
   const auto copy = [&](auto* to, const auto* from) {
     check(cudaMemcpyAsync(to, from, n * sizeof *to, cudaMemcpyDeviceToDevice, stream),
           "cannot copy in GPU memory");
   };
   copy(p.now.distance, film->distance);
-  copy(p.now.part, film->part);
   copy(p.now.normal, film->center_normal);
   launch_temporal(p, stream);
   check(cudaGetLastError(), "cannot launch a CUDA kernel");

@@ -85,8 +85,9 @@ class Card final : public CudaStages {
     const PictureFinish& finish = settings.finish;
     // A history's noise goes along with what moves, from pixel to pixel, and so looks like texture
     // to a denoiser: that comes first.
+    const Vec3f* const noisy = picture.film.radiance;
     if (finish.denoise) finisher_.denoise(film->width, film->height, &picture.film);
-    if (interactive) history->add(picture.camera, &picture.film, stream_.get());
+    if (interactive) history->add(picture.camera, noisy, &picture.film, stream_.get());
     if (finish.to_display) finisher_.show(finish.tone, film->width, film->height, &picture.film);
     flight->finished.record(stream_.get());
     flight->film.begin_download(picture.film, film, stream_.get());
@@ -119,7 +120,10 @@ class Card final : public CudaStages {
   static cuda::FilmNeeds needs_of(const CudaJob& job) {
     const RenderSettings& settings = job.settings;
     const bool described = job.guide_samples > 0 || settings.tier == RenderTier::kInteractive;
-    return {.light = settings.spp > 0, .places = described, .details = described};
+    return {.light = settings.spp > 0,
+            .places = described,
+            .details = described,
+            .clear = settings.tier == RenderTier::kInteractive && job.view.has_media()};
   }
 
   void measure_ambient(DevicePicture* picture) {

@@ -34,6 +34,7 @@ DeviceFilm DeviceFilmStore::place(const Film& film, const FilmNeeds& needs) {
   DeviceFilm out;
   const auto each = [&](DeviceLayout* layout) {
     layout->put(&out.rays, 1);
+    if (needs.clear) layout->put(&out.clear, film.pixel_count());
     each_channel(film, out, needs, [&](const auto& channel, auto& at, bool needed) {
       if (!channel.empty() || needed) layout->put(&at, film.pixel_count());
     });

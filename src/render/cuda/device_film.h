@@ -10,7 +10,7 @@ namespace gloam::cuda {
 
 /// Channels that kernels need whether or not the host asks for them.
 struct FilmNeeds {
-  bool light = false, places = false, details = false;
+  bool light = false, places = false, details = false, clear = false;
 };
 
 class DeviceFilmStore {

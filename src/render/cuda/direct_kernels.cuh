@@ -105,8 +105,9 @@ __global__ void __launch_bounds__(kBlock, kBlocks)
     }
   }
   if (for_guides && at.inside && scene.has_media()) {
-    guides::veil(scene.media, p.camera, at.x, at.y, p.film.distance[pixel], &p.film.albedo[pixel],
-                 &p.film.normal[pixel]);
+    const float clear = guides::veil(scene.media, p.camera, at.x, at.y, p.film.distance[pixel],
+                                     &p.film.albedo[pixel], &p.film.normal[pixel]);
+    if (p.film.clear != nullptr) p.film.clear[pixel] = clear;
   }
   count_rays(p.film, rays);
 }

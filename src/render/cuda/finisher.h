@@ -20,7 +20,8 @@ class Finisher {
 
   /// Whether the card carries this out. The first call that asks for a denoiser loads it.
   bool can(const PictureFinish& finish);
-  /// Queues the denoiser; film->radiance then is light without noise. Only where can() says so.
+  /// Queues the denoiser; film->radiance then is light without noise. Only after can() has returned
+  /// true.
   void denoise(int width, int height, DeviceFilm* film);
   /// Queues the tone map of film->radiance into film->rgb.
   void show(const ToneMapSettings& tone, int width, int height, DeviceFilm* film);

@@ -1,5 +1,7 @@
 // Kernels of the interactive tier: pictures into one.
 #include "render/cuda/interactive_kernels.h"
+#include "render/kernel/interactive/temporal_light.h"
+#include "render/kernel/interactive/temporal_restore.h"
 
 namespace gloam::cuda {
 namespace {
@@ -27,6 +29,17 @@ __global__ void compose_kernel(const __grid_constant__ TemporalPicture p) {
   if (pixel_of(p, &x, &y)) temporal::compose(p, x, y);
 }
 
+__global__ void sum_kernel(const __grid_constant__ TemporalPicture p) {
+  const auto i = static_cast<int>(blockIdx.x * kColumns * kRows + threadIdx.x);
+  if (i < p.block_columns() * p.block_rows())
+    temporal::sum_block(p, i % p.block_columns(), i / p.block_columns());
+}
+
+__global__ void restore_kernel(const __grid_constant__ TemporalPicture p) {
+  int x, y;
+  if (pixel_of(p, &x, &y)) temporal::restore(p, x, y);
+}
+
 }  // namespace
 
 void launch_temporal(const TemporalPicture& p, Stream stream) {
@@ -36,6 +49,10 @@ void launch_temporal(const TemporalPicture& p, Stream stream) {
   accumulate_kernel<<<blocks, threads, 0, stream>>>(p);
   settle_kernel<<<blocks, threads, 0, stream>>>(p);
   compose_kernel<<<blocks, threads, 0, stream>>>(p);
+  constexpr int kThreads = kColumns * kRows;
+  const int sums = p.block_columns() * p.block_rows();
+  sum_kernel<<<static_cast<unsigned>((sums + kThreads - 1) / kThreads), kThreads, 0, stream>>>(p);
+  restore_kernel<<<blocks, threads, 0, stream>>>(p);
 }
 
 }  // namespace gloam::cuda

@@ -23,6 +23,7 @@ struct DeviceFilm {
   Vec3f* center_albedo = nullptr;
   Vec2f* motion = nullptr;
   Vec3f* scene_flow = nullptr;
+  float* clear = nullptr;  ///< with the guides: luminance of the transmittance before the surface
   uint8_t* rgb = nullptr;
   unsigned long long* rays = nullptr;  ///< one number: traced so far
 };

@@ -28,17 +28,12 @@ __global__ void __launch_bounds__(kBlock, kBlocks)
     paths::ArrivalOf<float> arrival;
     arrival.medium_vertex = {true, hit.t, hit.instance};
     paths::meet(p.scene, p.path, arrival, &path, &at);
-    bool goes_on = false;
-    if (at.scatters) {
-      LightProbabilitiesOf<float> probabilities;
-      path.light_sampler.keep_in(&probabilities);
-      paths::NextEventOf<float> event;
-      goes_on = paths::sample_in_media(p.scene, p.path, at.medium_vertex, &path, &event);
-      if (goes_on) keep_lights(p.scene, pool, slot, probabilities);
-      if (event.lit) cast_shadow(p, w, slot, event);
-    }
+    const bool goes_on =
+        at.scatters && scatter(p, w, slot, &path, [&](paths::NextEventOf<float>* event) {
+          return paths::sample_in_media(p.scene, p.path, at.medium_vertex, &path, event);
+        });
     pool.path.store(slot, path);
-    if (goes_on) pool.paths[w.out()][append(&pool.counts->paths[w.out()])] = slot;
+    if (goes_on) go_on(w, slot);
   }
 }
 

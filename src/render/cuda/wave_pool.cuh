@@ -117,10 +117,7 @@ __device__ __forceinline__ void cast_shadow(const DevicePicture& p, const WaveTu
 __device__ __forceinline__ void cast_shadow(const DevicePicture& p, const WaveTurn& w,
                                             uint32_t slot, const paths::NextEventOf<float>& event) {
   paths::ShadowWalk walk = paths::ShadowWalk::of(event);
-  if (!event.casts_shadow) {
-    walk.ray.o = walk.ray.o + walk.ray.d * walk.length;
-    walk.ray.tmax = 0;
-  }
+  if (!event.casts_shadow) walk.ray.tmax = 0;
   cast_shadow(p, w, slot, walk);
 }
 
@@ -134,6 +131,25 @@ __device__ __forceinline__ void keep_lights(const SceneView& scene, const WavePo
   for (uint32_t i = 0; i < scene.lights.size; i += 4) {
     to[i / 4] = {from[i], from[i + 1], from[i + 2], from[i + 3]};
   }
+}
+
+/// Samples light and a direction at a vertex of the path with `sample(&event)`, and casts the
+/// shadow ray. Returns whether the path goes on.
+template <class Sample>
+__device__ __forceinline__ bool scatter(const DevicePicture& p, const WaveTurn& w, uint32_t slot,
+                                        paths::State<float>* path, const Sample& sample) {
+  LightProbabilitiesOf<float> probabilities;
+  path->light_sampler.keep_in(&probabilities);
+  paths::NextEventOf<float> event;
+  const bool goes_on = sample(&event);
+  if (goes_on) keep_lights(p.scene, w.pool, slot, probabilities);
+  if (event.lit) cast_shadow(p, w, slot, event);
+  return goes_on;
+}
+
+/// Puts a path on the list of the next turn.
+__device__ __forceinline__ void go_on(const WaveTurn& w, uint32_t slot) {
+  w.pool.paths[w.out()][append(&w.pool.counts->paths[w.out()])] = slot;
 }
 
 /// Surfaces of `sorted`: those of paths are kept, shadow rays go on behind theirs.

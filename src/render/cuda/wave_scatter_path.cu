@@ -25,19 +25,16 @@ __global__ void __launch_bounds__(kBlock, kScatterBlocks)
     paths::meet(p.scene, p.path, arrival, &path, &at);
     bool goes_on = at.through;
     if (at.scatters) {
-      LightProbabilitiesOf<float> probabilities;
-      path.light_sampler.keep_in(&probabilities);
-      paths::NextEventOf<float> event;
-      goes_on = paths::sample_at_surface(p.scene, p.path, at.v, &path, &event);
-      if (goes_on) keep_lights(p.scene, pool, slot, probabilities);
-      if (event.lit) cast_shadow(p, w, slot, event);
+      goes_on = scatter(p, w, slot, &path, [&](paths::NextEventOf<float>* event) {
+        return paths::sample_at_surface(p.scene, p.path, at.v, &path, event);
+      });
     }
     if (goes_on || keeps_for_media(p)) {
       pool.path.store(slot, path);
     } else {
       pool.path.store(slot, path, kResult, kResult + sizeof path.result);
     }
-    if (goes_on) pool.paths[w.out()][append(&pool.counts->paths[w.out()])] = slot;
+    if (goes_on) go_on(w, slot);
   }
 }
 

@@ -13,8 +13,7 @@ __device__ void pass_shadow(const DevicePicture& p, const WaveTurn& w, uint32_t 
       w.pool.in_shadow[slot] = 0;
       return;
     }
-    walk.ray.o = walk.ray.o + walk.ray.d * walk.ray.tmax;  // the light lies within rounding
-    walk.ray.tmax = 0;
+    walk.ray.tmax = 0;  // the light lies within rounding
   }
   cast_shadow(p, w, slot, walk);
 }

@@ -31,8 +31,8 @@ struct PictureMemory {
   uint64_t frame = 0;    ///< memory of each CameraFrame
 };
 
-/// Longest path of a picture, in vertices: RenderOptions::max_depth, or what is usual in a scene
-/// with media or without.
+/// Longest path of a picture, in vertices: RenderOptions::max_depth, or by default 5, and 24 in
+/// scenes with media and in the interactive tier.
 int path_depth(const RenderOptions& render, bool has_media);
 
 class CameraSensor {

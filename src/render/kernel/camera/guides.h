@@ -43,10 +43,10 @@ GLOAM_HD Ray edge_ray(const CameraView32& camera, int x, int y, int k, bool has_
                     static_cast<float>(y) + 0.5f + offset.y, time, cone);
 }
 
-/// Media before a surface at `distance`: what scatters first counts, each by the light that it
-/// takes.
-GLOAM_HD void veil(const MediaView& media, const CameraView32& camera, int x, int y, float distance,
-                   Vec3f* albedo, Vec3f* normal) {
+/// Adds media before a surface at `distance` to its guides, each by the share of light that it
+/// scatters first. Returns the luminance of the transmittance up to the surface.
+GLOAM_HD float veil(const MediaView& media, const CameraView32& camera, int x, int y,
+                    float distance, Vec3f* albedo, Vec3f* normal) {
   constexpr int kSteps = 64;
   RayCone cone;
   const Ray ray =
@@ -56,7 +56,9 @@ GLOAM_HD void veil(const MediaView& media, const CameraView32& camera, int x, in
   const Vec3f veiled = *albedo * m.transmittance + m.radiance;
   // Emission is brighter than any albedo.
   *albedo = {min(veiled.x, 1.0f), min(veiled.y, 1.0f), min(veiled.z, 1.0f)};
-  *normal *= luminance(m.transmittance);
+  const float clear = luminance(m.transmittance);
+  *normal *= clear;
+  return clear;
 }
 
 }  // namespace gloam::guides

@@ -14,13 +14,13 @@ struct ShadowWalk {
   Vec3f arriving;
   uint32_t passed = 0;
   float length = 0;  ///< of the whole ray [m]
+  float behind =
+      0;  ///< from its start to ray.o [m]; ray.tmax of distant light is too coarse for it
 
   GLOAM_HD static ShadowWalk of(const NextEventOf<float>& event) {
     return {event.shadow, event.arriving, 0, event.shadow.tmax};
   }
-  GLOAM_HD Ray whole_ray() const {
-    return {ray.o + ray.d * (ray.tmax - length), ray.d, length, ray.time};
-  }
+  GLOAM_HD Ray whole_ray() const { return {ray.o - ray.d * behind, ray.d, length, ray.time}; }
 };
 
 /// Takes the surface that the shadow ray has hit; true where the ray goes on behind it.
@@ -28,6 +28,7 @@ GLOAM_HD bool pass_surface(const Surface& s, ShadowWalk* walk) {
   walk->arriving *= walk->passed < kMaxPassed ? passing_light(s) : Vec3f{};
   walk->ray.o = leave_surface(s.p, s.geometric, walk->ray.d, s.t);
   walk->ray.tmax -= s.t;
+  walk->behind += s.t;
   ++walk->passed;
   return max_component(walk->arriving) > 0 && walk->ray.tmax > 0;
 }

@@ -1,0 +1,72 @@
+#pragma once
+// Scales shown light to the noisy light of its neighbourhood: denoisers and clamps lose light of
+// rare bright samples. Device-safe.
+
+#include "render/kernel/film/light_gain.h"
+#include "render/kernel/interactive/temporal.h"
+
+namespace gloam::temporal {
+
+/// Calls visit(pixel) for the pixels of a block and `margin` pixels around it.
+template <class Visit>
+GLOAM_HD void each_of_block(const TemporalPicture& p, int column, int row, int margin,
+                            const Visit& visit) {
+  constexpr int kBlock = TemporalPicture::kBlock;
+  const int side = kBlock + 2 * margin;
+  for (int k = 0; k < side * side; ++k) {
+    const int x = kBlock * column + k % side - margin, y = kBlock * row + k / side - margin;
+    if (p.holds(x, y)) visit(p.index(x, y));
+  }
+}
+
+/// Sums the block's noisy and shown light, in units of its brightest pixel: a bright window does
+/// not decide for the wall beside it. After compose() of all pixels.
+GLOAM_HD void sum_block(const TemporalPicture& p, int column, int row) {
+  float brightest = 1e-9f;
+  each_of_block(p, column, row, 2,
+                [&](size_t i) { brightest = max(brightest, luminance(p.color[i])); });
+  BlockLight sum;
+  each_of_block(p, column, row, 0, [&](size_t i) {
+    sum.noisy += p.now.noisy[i];
+    sum.shown += p.color[i];
+  });
+  p.blocks[static_cast<size_t>(row) * static_cast<size_t>(p.block_columns()) +
+           static_cast<size_t>(column)] = {sum.noisy / brightest, sum.shown / brightest,
+                                           1 / brightest};
+}
+
+/// Scales the pixel's colour so that it keeps the noisy light of the blocks around. After
+/// sum_block() of all blocks.
+GLOAM_HD void restore(const TemporalPicture& p, int x, int y) {
+  constexpr int kBlock = TemporalPicture::kBlock;
+  constexpr float kReach = 4.5f;  // [blocks]
+  const float u = (static_cast<float>(x) + 0.5f) / kBlock - 0.5f,
+              v = (static_cast<float>(y) + 0.5f) / kBlock - 0.5f;
+  BlockLight sum;
+  float total = 0;
+  const auto first = [](float at) { return max(static_cast<int>(ceilf(at - kReach)), 0); };
+  const auto last = [](float at, int count) {
+    return min(static_cast<int>(floorf(at + kReach)), count - 1);
+  };
+  for (int row = first(v); row <= last(v, p.block_rows()); ++row) {
+    for (int column = first(u); column <= last(u, p.block_columns()); ++column) {
+      const float weight = (kReach - fabsf(static_cast<float>(column) - u)) *
+                           (kReach - fabsf(static_cast<float>(row) - v));
+      const BlockLight& block =
+          p.blocks[static_cast<size_t>(row) * static_cast<size_t>(p.block_columns()) +
+                   static_cast<size_t>(column)];
+      sum.noisy += block.noisy * weight;
+      sum.shown += block.shown * weight;
+      sum.unit += block.unit * weight;
+      total += weight;
+    }
+  }
+  Vec3f& color = p.color[p.index(x, y)];
+  const Vec3f gain = light_gain(sum.noisy, sum.shown, kMostWindowGain);
+  // Pixels far brighter than the blocks around show lamps or the sky, which have no noise.
+  const float share = min(total / (sum.unit * max(luminance(color), 1e-9f)), 1.0f);
+  color = {color.x * lerp(1, gain.x, share), color.y * lerp(1, gain.y, share),
+           color.z * lerp(1, gain.z, share)};
+}
+
+}  // namespace gloam::temporal
