@@ -150,6 +150,20 @@ TEST(InteractiveMedia, BeamsInFogAreWhereTheirLampsPoint) {
   EXPECT_NEAR(FoggyBeam::lean(film), exact, 0.25) << "the beam trails behind";
 }
 
+TEST(InteractiveMedia, SkyThroughAHoleLightsThinDustAsInThePathTier) {
+  SceneBuilder b = room_with_window({"sky", 0, 0, 3000}, true);
+  MediaBuilder dust;  // scatters forward
+  dust.add_box(
+      {4, 4, 3}, {0, 0, 1.5f}, 1,
+      dust.add_medium({0.25f, 0.25f, 0.25f}, {0.95f, 0.95f, 0.95f}, {0.75f, 0.75f, 0.75f}));
+  b.description.media = dust.media;
+  b.description.volumes = dust.volumes;
+  const CameraView view =
+      SceneBuilder::camera(look_at({1.5f, -1.5f, 1.5f}, {-2, 0.5f, 1.2f}), 48, 36, 60);
+  const double exact = mean_luminance(path_picture(b, view, 512, kEndless));
+  EXPECT_NEAR(mean_luminance(interactive_picture(b, view, 8)) / exact, 1, 0.15);
+}
+
 TEST(InteractiveMedia, FlamesLightTheRoomAsInThePathTier) {
   for (const float k : {2.0f, 40.0f}) {
     SceneBuilder b = closed_room(0);

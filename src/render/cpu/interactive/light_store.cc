@@ -8,8 +8,8 @@
 namespace gloam {
 namespace {
 
-// "GLOMLT01": changes with what the cells hold and how they are traced.
-constexpr uint64_t kLightMagic = 0x3130544C4D4F4C47ull;
+// "GLOMLT02": to be changed with every change of what cells hold or of how their light is traced.
+constexpr uint64_t kLightMagic = 0x3230544C4D4F4C47ull;
 
 std::filesystem::path entry_of(uint64_t key) {
   return cache_folder(kLightCache) / cache_entry_name(kLightCache, key);

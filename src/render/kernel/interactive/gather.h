@@ -90,12 +90,20 @@ class GatherRays {
     CacheRequest air[Lanes<F>::kCount] = {};
     const MediaLightOf<F> media = cross_media(world_, options, &path_, air);
     out_.light += select<F>(active_, throughput_ * (media.radiance + media.around), Vec3Of<F>{});
-    // Request of what brings more light: the air on the way, or the surface.
-    const Mask airy =
-        active_ & ((!found) | (max_component(media.scattered) > max_component(media.through)));
+    if (world_.scene.has_media()) ask_air(media, found, air);
+    throughput_ = select<F>(active_, throughput_ * media.through, throughput_);
+  }
+
+  /// Requests the air on the way or the surface, at random by the light that each brings. A ray to
+  /// the sky requests the air only as often as it scatters: the direction of a request shapes the
+  /// light of its cell, which other rays use too.
+  GLOAM_HD void ask_air(const MediaLightOf<F>& media, Mask found, const CacheRequest* air) {
+    const F scattered = max_component(media.scattered);
+    const F beyond = select(found, max_component(media.through), max(1.0f - scattered, F(0.0f)));
+    const F part = scattered / max(scattered + beyond, F(1e-9f));
+    const Mask airy = active_ & (path_.sampler.next_1d(active_) < part);
     each_lane(airy & !asked_, [&](int i) { requests_[i] = air[i]; });
     asked_ = asked_ | airy;
-    throughput_ = select<F>(active_, throughput_ * media.through, throughput_);
   }
 
   [[gnu::always_inline]] GLOAM_HD void meet_surface(const RayHitOf<F>& hit) {
