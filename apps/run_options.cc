@@ -69,7 +69,7 @@ void RenderFlags::add_to(CLI::App& command) {
   command
       .add_option("--max-depth", max_depth,
                   "Maximum length of light paths, in vertices; default: the scene's, or 5, or 24 "
-                  "with media")
+                  "with media and in the interactive tier")
       ->check(CLI::Range(1, 64));
   command
       .add_option(

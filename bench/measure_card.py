@@ -1,6 +1,8 @@
 """What is measured on an NVIDIA card: `./gloam bench --device cuda`."""
 import json
 import os
+import tempfile
+import time
 
 import go1_room
 from measure import BIN, CACHE, ROOT, at_least, at_most, robot, run, run_json
@@ -49,6 +51,21 @@ def lidar_on_card(quick):
     yield at_most("LiDAR of 64 x 1024 beams in the house, points in host memory [ms]", figures["card_ms"], 2, f"{figures['points']} points")
 
 
+def demo_on_card(quick):
+    """the demo with two cameras and video on the card"""
+    took = {}
+    for duration in (1, 3 if quick else 6):
+        with tempfile.TemporaryDirectory(prefix="gloam_bench_") as folder:
+            start = time.monotonic()
+            run(BIN / "gloam", "run", ROOT / "examples" / "demo.toml", "--device", "cuda", "--spp", 16, "--output", "video", "--duration", duration,
+                "--out", f"{folder}/demo")
+            took[duration] = time.monotonic() - start
+    (short, first), (long, last) = took.items()
+    images = 2 * 20 * (long - short)
+    yield at_least("demo.toml, two cameras of 640x480, 16 samples, denoised, with video: images a second", images / (last - first), 40,
+                   f"between the runs of {short} and {long} s, which took {first:.1f} and {last:.1f} s")
+
+
 def gas_on_card(quick):
     """smoke and fire on the card, beside all cores of its machine"""
     steps = ("--steps", 10 if quick else 60, "--threads", os.cpu_count(), "--json")
@@ -60,4 +77,4 @@ def gas_on_card(quick):
     yield at_most("the same: L2 norm of the divergence after / before, worst step", card["worst_divergence_ratio"], 1e-4, "something moves")
 
 
-ALL = {card_rate: 60, lidar_on_card: 20, realistic_card_rate: 60, gas_on_card: 40}
+ALL = {card_rate: 60, lidar_on_card: 20, demo_on_card: 30, realistic_card_rate: 60, gas_on_card: 40}

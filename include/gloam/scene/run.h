@@ -32,8 +32,8 @@ struct RenderOptions {
   /// Error bound of the path tier: each pixel is sampled until its standard error is this fraction
   /// of its value, 0.0001 … 1 (docs/light.md); empty = the same number of samples in every pixel.
   std::optional<double> error = {};
-  /// Path vertices after the camera, 1 … 64; empty = 5, or 24 with media, because fog is white due
-  /// to multiple scattering.
+  /// Path vertices after the camera, 1 … 64; empty = 5, or 24 with media, where fog is white due to
+  /// multiple scattering, and in the interactive tier.
   std::optional<int> max_depth = {};
   /// cpu | cuda | auto (an NVIDIA GPU if this build and this machine support one, otherwise the
   /// CPU).
