@@ -8,8 +8,8 @@
 // Writes OUT/interactive_I.png and OUT/path_I.png for the frames I, J … (default: the last), and
 // prints "frame I mean R G B / R G B" with the mean radiance of the interactive and the path tier
 // [cd/m²]. The path tier's picture is the mean of two with half of the samples each, half_0_I.png
-// and half_1_I.png, which tell how much noise is left in it. Both halves have long
-// paths and are denoised, which keeps their means. In FOLDER references are kept for the next time.
+// and half_1_I.png, whose difference shows its noise. Both halves have long paths and are denoised,
+// which keeps their means. FOLDER keeps the references for later runs.
 
 #include <fmt/format.h>
 
@@ -68,8 +68,8 @@ struct Studio {
   }
 };
 
-/// Key of a scene's references on disk: its file and the options. The generated place is no part of
-/// it, since its last bits depend on the machine's C library.
+/// Key of a scene's references on disk, from its file and the options. The generated place does not
+/// contribute, since its last bits depend on the machine's C library.
 Result<uint64_t> key_of(const Options& options) {
   GLOAM_TRY(const std::vector<uint8_t> text, read_file(options.model));
   const int taken[] = {options.width, options.height, options.rate, options.spp, kReferenceDepth};

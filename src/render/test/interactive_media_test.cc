@@ -88,14 +88,19 @@ TEST(InteractiveMedia, SmokeIsLitAsByThePathTier) {
   }
 }
 
+/// Fills a box with one grey medium.
+void fill(SceneBuilder* b, Vec3f size, Vec3f center, float k, float albedo, float g) {
+  MediaBuilder media;
+  const int medium = media.add_medium({k, k, k}, {albedo, albedo, albedo}, {g, g, g});
+  media.add_box(size, center, 1, medium);
+  b->description.media = media.media;
+  b->description.volumes = media.volumes;
+}
+
 TEST(InteractiveMedia, WallsKeepTheLightOfFogOutside) {
   // Fog inside and out, where the sun lights it a hundred times as brightly.
   SceneBuilder b = room_with_window({"sun", 0, 50000, 0}, true);
-  MediaBuilder fog;
-  fog.add_box({14, 14, 8}, {0, 0, 1.5f}, 1,
-              fog.add_medium({0.2f, 0.2f, 0.2f}, {0.7f, 0.7f, 0.7f}, {0.5f, 0.5f, 0.5f}));
-  b.description.media = fog.media;
-  b.description.volumes = fog.volumes;
+  fill(&b, {14, 14, 8}, {0, 0, 1.5f}, 0.2f, 0.7f, 0.5f);
   // Away from the window.
   const CameraView view =
       SceneBuilder::camera(look_at({1.5f, -1.5f, 1.5f}, {-2, 0.5f, 1.2f}), 96, 72, 60);
@@ -118,11 +123,7 @@ struct FoggyBeam {
     spot.cos_cutoff = std::cos(0.2f);
     spot.intensity = {cd, cd, cd};
     b.add_light(spot, {0, 0, -0.5f});
-    MediaBuilder fog;
-    fog.add_box({6, 6, 4}, {0, 0, 1}, 1,
-                fog.add_medium({0.1f, 0.1f, 0.1f}, {0.9f, 0.9f, 0.9f}, {0.3f, 0.3f, 0.3f}));
-    b.description.media = fog.media;
-    b.description.volumes = fog.volumes;
+    fill(&b, {6, 6, 4}, {0, 0, 1}, 0.1f, 0.9f, 0.3f);
     aim(0);
   }
   void aim(float angle) { b.frame.light_dir = {std::sin(angle), 0, std::cos(angle)}; }
@@ -152,12 +153,7 @@ TEST(InteractiveMedia, BeamsInFogAreWhereTheirLampsPoint) {
 
 TEST(InteractiveMedia, SkyThroughAHoleLightsThinDustAsInThePathTier) {
   SceneBuilder b = room_with_window({"sky", 0, 0, 3000}, true);
-  MediaBuilder dust;  // scatters forward
-  dust.add_box(
-      {4, 4, 3}, {0, 0, 1.5f}, 1,
-      dust.add_medium({0.25f, 0.25f, 0.25f}, {0.95f, 0.95f, 0.95f}, {0.75f, 0.75f, 0.75f}));
-  b.description.media = dust.media;
-  b.description.volumes = dust.volumes;
+  fill(&b, {4, 4, 3}, {0, 0, 1.5f}, 0.25f, 0.95f, 0.75f);  // scatters forward
   const CameraView view =
       SceneBuilder::camera(look_at({1.5f, -1.5f, 1.5f}, {-2, 0.5f, 1.2f}), 48, 36, 60);
   const double exact = mean_luminance(path_picture(b, view, 512, kEndless));

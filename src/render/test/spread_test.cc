@@ -1,4 +1,4 @@
-// Benefit of evenly spread sample points: noise of 16 samples against that of as many
+// Noise reduction by evenly spread sample points: noise of 16 samples against that of as many
 // independent ones.
 
 #include <gtest/gtest.h>

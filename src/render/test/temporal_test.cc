@@ -137,7 +137,7 @@ TEST(Temporal, ALampDoesNotChangeTheWallBesideIt) {
   }
   floor.join();
   for (size_t i = 0; i < kPixels; ++i)
-    if (floor.part[i] == 2) floor.color[i] *= 1.2f;  // an error of what is shown of the lamp
+    if (floor.part[i] == 2) floor.color[i] *= 1.2f;  // the lamp's shown light is wrong
   floor.restore();
   EXPECT_NEAR(floor.color[floor.picture.index(4, 8)].x, 10, 1);
 }

@@ -33,8 +33,8 @@ struct LightChange {
   const InteractivePlane3& now;
   LightGain* gain;
 };
-/// Measures the ratio of each pixel's luminance to that of the same place in the previous picture,
-/// for at most kSignals lights.
+/// Measures the ratio of each pixel's luminance to the luminance of the same place in the previous
+/// picture, for at most kSignals lights.
 void measure_gains(const InteractiveFrame& before, const InteractiveFrame& now,
                    std::span<const LightChange> changes);
 

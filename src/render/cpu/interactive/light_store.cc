@@ -8,7 +8,7 @@
 namespace gloam {
 namespace {
 
-// "GLOMLT02": to be changed with every change of what cells hold or of how their light is traced.
+// "GLOMLT02": change it whenever the content of cells or the tracing of their light changes.
 constexpr uint64_t kLightMagic = 0x3230544C4D4F4C47ull;
 
 std::filesystem::path entry_of(uint64_t key) {

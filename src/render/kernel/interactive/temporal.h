@@ -5,6 +5,7 @@
 // Device-safe.
 
 #include "render/kernel/camera/camera.h"
+#include "render/kernel/film/firefly.h"
 
 namespace gloam {
 
@@ -45,6 +46,10 @@ struct TemporalPicture {
   static constexpr int kBlock = 8;  ///< [px]
   GLOAM_HD int block_columns() const { return (width + kBlock - 1) / kBlock; }
   GLOAM_HD int block_rows() const { return (height + kBlock - 1) / kBlock; }
+  GLOAM_HD BlockLight& block(int column, int row) const {
+    return blocks[static_cast<size_t>(row) * static_cast<size_t>(block_columns()) +
+                  static_cast<size_t>(column)];
+  }
   GLOAM_HD size_t index(int x, int y) const {
     return static_cast<size_t>(y) * static_cast<size_t>(width) + static_cast<size_t>(x);
   }
@@ -60,13 +65,8 @@ inline constexpr float kDistance = 0.01f;  ///< tolerance, relative
 /// Pixels whose surface passes less of its light show the media before it.
 inline constexpr float kLeastClear = 0.3f;
 inline constexpr uint32_t kMediaPart = ~0u;  ///< `part` of such pixels
-/// Bit in `part` of pixels beside another object or colour: their light is that of both.
+/// Bit in `part` of pixels beside another object or colour, which show the light of both.
 inline constexpr uint32_t kBorder = 1u << 31;
-
-GLOAM_HD float finite_light(float x) { return x > 0 && x < INFINITY ? min(x, 1e9f) : 0.0f; }
-GLOAM_HD Vec3f finite_light(Vec3f c) {
-  return {finite_light(c.x), finite_light(c.y), finite_light(c.z)};
-}
 
 /// Whether two pixels show one object in similar colours.
 GLOAM_HD bool is_one(const TemporalPicture& p, size_t i, size_t j) {
@@ -75,8 +75,8 @@ GLOAM_HD bool is_one(const TemporalPicture& p, size_t i, size_t j) {
               b = max(luminance(p.albedo[j]), kLeastColor);
   return p.part[i] == p.part[j] && max(a, b) <= kMostContrast * min(a, b);
 }
-/// Pixels of one value can show the same light: those of the exact channel, told apart by whether
-/// they are at a border, and all that show media.
+/// Value that pixels have in common if they can share their light: the exact channel with a bit for
+/// pixels at a border, or kMediaPart.
 GLOAM_HD uint32_t part_of(const TemporalPicture& p, int x, int y) {
   const size_t i = p.index(x, y);
   if (p.clear != nullptr && p.clear[i] < kLeastClear) return kMediaPart;
@@ -86,8 +86,9 @@ GLOAM_HD uint32_t part_of(const TemporalPicture& p, int x, int y) {
                       (y + 1 == p.height || is_one(p, i, p.index(x, y + 1)));
   return inside ? p.part[i] : p.part[i] | kBorder;
 }
+GLOAM_HD bool is_sky(uint32_t part) { return (part & ~kBorder) == 0; }
 /// Whether pixels of this value show no surface.
-GLOAM_HD bool is_empty(uint32_t part) { return (part & ~kBorder) == 0 || part == kMediaPart; }
+GLOAM_HD bool is_empty(uint32_t part) { return is_sky(part) || part == kMediaPart; }
 
 /// Colour that the light of a pixel is divided by: never black. White where light is not reflected
 /// (sky, lamps, media), and where two objects share a pixel.
@@ -168,7 +169,7 @@ GLOAM_HD Past find_past(const TemporalPicture& p, int x, int y) {
 GLOAM_HD void accumulate(const TemporalPicture& p, int x, int y) {
   const size_t i = p.index(x, y);
   p.now.part[i] = part_of(p, x, y);
-  const Vec3f color = divisor(p, i), light = finite_light(p.radiance[i]);
+  const Vec3f color = divisor(p, i), light = fireflies::sanitize(p.radiance[i]);
   const Vec3f fresh{light.x / color.x, light.y / color.y, light.z / color.z};
   const Past past = find_past(p, x, y);
   const float age = past.age + p.weight;
@@ -177,7 +178,7 @@ GLOAM_HD void accumulate(const TemporalPicture& p, int x, int y) {
   };
   p.now.light[i] = mean(past.light, fresh, kMostAge);
   p.now.recent[i] = mean(past.recent, fresh, kMostRecent);
-  p.now.noisy[i] = mean(past.noisy, finite_light(p.noisy[i]), kMostNoisy);
+  p.now.noisy[i] = mean(past.noisy, fireflies::sanitize(p.noisy[i]), kMostNoisy);
   p.now.age[i] = min(age, kMostAge);
 }
 

@@ -57,12 +57,12 @@ GLOAM_HD void settle(const TemporalPicture& p, int x, int y) {
 /// so that a picture at rest does not flicker. After settle() of all pixels.
 GLOAM_HD Vec3f shown_light(const TemporalPicture& p, int x, int y) {
   const size_t i = p.index(x, y);
-  const bool is_sky = (p.now.part[i] & ~kBorder) == 0;
-  const float settled = p.now.part[i] == kMediaPart ? kSettledAgeInMedia : kSettledAge;
+  const uint32_t part = p.now.part[i];
+  const float settled = part == kMediaPart ? kSettledAgeInMedia : kSettledAge;
   const float reach = kWidestSpread * max(1 - p.now.age[i] / settled, 0);
   Vec3f sum = p.now.light[i];
   float total = 1;
-  for (int k = 1; !is_sky && reach > 0 && k <= kSpreadTaps; ++k) {
+  for (int k = 1; !is_sky(part) && reach > 0 && k <= kSpreadTaps; ++k) {
     constexpr float kGoldenTurn = 0.381966f;  // a spiral of evenly dense places
     const float share = static_cast<float>(k) / kSpreadTaps, r = reach * sqrtf(share);
     const float turns = kGoldenTurn * static_cast<float>(k);

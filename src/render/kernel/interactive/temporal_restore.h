@@ -30,9 +30,7 @@ GLOAM_HD void sum_block(const TemporalPicture& p, int column, int row) {
     sum.noisy += p.now.noisy[i];
     sum.shown += p.color[i];
   });
-  p.blocks[static_cast<size_t>(row) * static_cast<size_t>(p.block_columns()) +
-           static_cast<size_t>(column)] = {sum.noisy / brightest, sum.shown / brightest,
-                                           1 / brightest};
+  p.block(column, row) = {sum.noisy / brightest, sum.shown / brightest, 1 / brightest};
 }
 
 /// Scales the pixel's colour so that it keeps the noisy light of the blocks around. After
@@ -52,9 +50,7 @@ GLOAM_HD void restore(const TemporalPicture& p, int x, int y) {
     for (int column = first(u); column <= last(u, p.block_columns()); ++column) {
       const float weight = (kReach - fabsf(static_cast<float>(column) - u)) *
                            (kReach - fabsf(static_cast<float>(row) - v));
-      const BlockLight& block =
-          p.blocks[static_cast<size_t>(row) * static_cast<size_t>(p.block_columns()) +
-                   static_cast<size_t>(column)];
+      const BlockLight& block = p.block(column, row);
       sum.noisy += block.noisy * weight;
       sum.shown += block.shown * weight;
       sum.unit += block.unit * weight;

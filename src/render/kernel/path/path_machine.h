@@ -14,8 +14,8 @@ struct ShadowWalk {
   Vec3f arriving;
   uint32_t passed = 0;
   float length = 0;  ///< of the whole ray [m]
-  float behind =
-      0;  ///< from its start to ray.o [m]; ray.tmax of distant light is too coarse for it
+  /// From its start to ray.o [m]: ray.tmax of distant light has too few digits to derive it from.
+  float behind = 0;
 
   GLOAM_HD static ShadowWalk of(const NextEventOf<float>& event) {
     return {event.shadow, event.arriving, 0, event.shadow.tmax};

@@ -74,7 +74,7 @@ void add_order(const PatternSurface& surface, float texel, DetailOrders* out) {
   constexpr float kVisible = 1e-5f;
   out->rows.push_back(-1);
   if (surface.texel <= 2 * texel || surface.lost < kVisible) return;
-  // The map of a small surface may repeat sooner than that of a room's floor and walls.
+  // The map of a small surface may repeat at shorter distances than the map of a floor or a wall.
   DetailOrder order{surface.pattern, surface.texel, texel,
                     surface.area > 10 ? 512 : (surface.area > 1 ? 256 : 128)};
   const auto at = std::find_if(out->orders.begin(), out->orders.end(), [&](const DetailOrder& in) {
