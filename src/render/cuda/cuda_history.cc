@@ -43,6 +43,7 @@ TemporalPlanes CudaHistory::place(DeviceBuffer* buffer) const {
     layout->put(&out.light, n);
     layout->put(&out.recent, n);
     layout->put(&out.noisy, n);
+    layout->put(&out.square, n);
     layout->put(&out.age, n);
     layout->put(&out.distance, n);
     layout->put(&out.part, n);
@@ -74,6 +75,7 @@ void CudaHistory::add(const CameraView32& camera, const Vec3f* noisy, DeviceFilm
   p.has_before = pictures_ > 0;
   p.weight = weight_;
   p.color = color_.reserve_of<Vec3f>(n);
+  p.shown = shown_.reserve_of<Vec3f>(n);
   p.blocks = blocks_.reserve_of<BlockLight>(static_cast<size_t>(p.block_columns()) *
                                             static_cast<size_t>(p.block_rows()));
   const auto copy = [&](auto* to, const auto* from) {
@@ -84,7 +86,7 @@ void CudaHistory::add(const CameraView32& camera, const Vec3f* noisy, DeviceFilm
   copy(p.now.normal, film->center_normal);
   launch_temporal(p, stream);
   check(cudaGetLastError(), "cannot launch a CUDA kernel");
-  film->radiance = p.color;
+  film->radiance = p.shown;
   X_WC_ = camera.pose.X_WC_open;
   ++pictures_;
 }

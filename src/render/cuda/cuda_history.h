@@ -31,7 +31,7 @@ class CudaHistory final : public ViewHistory {
   uint32_t pictures_ = 0;   ///< before it
   Affine3f X_WC_;           ///< of the last one
   DeviceBuffer planes_[2];  ///< the last picture's at the index pictures_ % 2
-  DeviceBuffer color_, blocks_;
+  DeviceBuffer color_, shown_, blocks_;
 };
 
 }  // namespace gloam::cuda

@@ -29,6 +29,11 @@ __global__ void compose_kernel(const __grid_constant__ TemporalPicture p) {
   if (pixel_of(p, &x, &y)) temporal::compose(p, x, y);
 }
 
+__global__ void details_kernel(const __grid_constant__ TemporalPicture p) {
+  int x, y;
+  if (pixel_of(p, &x, &y)) temporal::add_details(p, x, y);
+}
+
 __global__ void sum_kernel(const __grid_constant__ TemporalPicture p) {
   const auto i = static_cast<int>(blockIdx.x * kColumns * kRows + threadIdx.x);
   if (i < p.block_columns() * p.block_rows())
@@ -49,6 +54,7 @@ void launch_temporal(const TemporalPicture& p, Stream stream) {
   accumulate_kernel<<<blocks, threads, 0, stream>>>(p);
   settle_kernel<<<blocks, threads, 0, stream>>>(p);
   compose_kernel<<<blocks, threads, 0, stream>>>(p);
+  details_kernel<<<blocks, threads, 0, stream>>>(p);
   constexpr int kThreads = kColumns * kRows;
   const int sums = p.block_columns() * p.block_rows();
   sum_kernel<<<static_cast<unsigned>((sums + kThreads - 1) / kThreads), kThreads, 0, stream>>>(p);

@@ -12,8 +12,9 @@ namespace {
 /// Paths at once, at most: enough to fill the card many times over, in three gigabytes.
 constexpr uint32_t kMostSlots = 1u << 22;
 constexpr int kTraceBlocks = 8;  ///< on a multiprocessor: 64 registers a thread
-/// Blocks of the kernels of late turns, in which few paths are left behind panes and leaves.
+/// Blocks of the kernels of late turns, in which few paths are left.
 constexpr unsigned kLateBlocks = 1024;
+constexpr int kEarlyTurns = 4;  ///< turns in which every path may be alive
 
 /// Part of a picture whose samples all have a slot: tiles of 8 x 4 pixels, of each tile all
 /// samples, of each sample the 32 pixels. Pictures of several worlds would follow each other as
@@ -219,7 +220,7 @@ void run_batch(const DevicePicture& p, const WavePool& pool, const WaveBatch& ba
   WaveTurn w{pool, 0, all};
   for (;; ++w.turn) {
     const int turns = w.turn + 1;
-    w.blocks = turns <= segments ? all : std::min(all, kLateBlocks);
+    w.blocks = turns <= kEarlyTurns ? all : std::min(all, kLateBlocks);
     run_turn(p, w, stream);
     if (turns == segments && !p.scene.lets_light_through()) break;
     const bool may_end = turns <= segments ? turns % 8 == 0 : (turns - segments) % 4 == 2;

@@ -18,18 +18,20 @@ constexpr size_t kPixels = size_t{kWidth} * kHeight;
 
 struct Planes {
   std::vector<Vec3f> light{kPixels}, recent{kPixels}, noisy{kPixels}, normal{kPixels};
-  std::vector<float> age = std::vector<float>(kPixels), distance = std::vector<float>(kPixels);
+  std::vector<float> age = std::vector<float>(kPixels), distance = age, square = age;
   std::vector<uint32_t> part = std::vector<uint32_t>(kPixels);
   TemporalPlanes view() {
-    return {light.data(),    recent.data(), noisy.data(), age.data(),
-            distance.data(), part.data(),   normal.data()};
+    return {light.data(), recent.data(),   noisy.data(), square.data(),
+            age.data(),   distance.data(), part.data(),  normal.data()};
   }
 };
 
 /// A camera that looks down on a floor, 2 m below.
 struct Floor {
   Planes planes[2];
-  std::vector<Vec3f> radiance{kPixels}, albedo{kPixels}, scene_flow{kPixels}, color{kPixels};
+  std::vector<Vec3f> radiance{kPixels}, albedo{kPixels}, scene_flow{kPixels}, color{kPixels},
+      shown{kPixels};
+  std::vector<Vec3f> denoised;  ///< empty = radiance
   std::vector<BlockLight> blocks;
   std::vector<float> clear;  ///< empty = no media
   std::vector<uint32_t> part = std::vector<uint32_t>(kPixels, 1);
@@ -68,7 +70,8 @@ struct Floor {
       now.normal[i] = {0, 0, 1};
       now.distance[i] = -ray.o.z / ray.d.z;
     });
-    picture.radiance = picture.noisy = radiance.data();
+    picture.noisy = radiance.data();
+    picture.radiance = denoised.empty() ? radiance.data() : denoised.data();
     picture.clear = clear.empty() ? nullptr : clear.data();
     picture.part = part.data();
     blocks.resize(size_t(picture.block_columns()) * size_t(picture.block_rows()));
@@ -80,6 +83,7 @@ struct Floor {
     picture.before = planes[(taken + 1) % 2].view();
     picture.has_before = taken > 0;
     picture.color = color.data();
+    picture.shown = shown.data();
     each([&](int x, int y) { temporal::accumulate(picture, x, y); });
     each([&](int x, int y) { temporal::settle(picture, x, y); });
     each([&](int x, int y) { temporal::compose(picture, x, y); });
@@ -87,6 +91,7 @@ struct Floor {
   }
 
   void restore() {
+    each([&](int x, int y) { temporal::add_details(picture, x, y); });
     for (int row = 0; row < picture.block_rows(); ++row)
       for (int column = 0; column < picture.block_columns(); ++column)
         temporal::sum_block(picture, column, row);
@@ -98,9 +103,9 @@ struct Floor {
     for (int y = 0; y < kHeight; ++y)
       for (int x = 0; x < kWidth; ++x) f(x, y);
   }
-  Vec3f mean() const {
+  static Vec3f mean(const std::vector<Vec3f>& light) {
     Vec3f sum;
-    for (const Vec3f& c : color) sum += c;
+    for (const Vec3f& c : light) sum += c;
     return sum / static_cast<float>(kPixels);
   }
   Planes& last() { return planes[(taken + 1) % 2]; }
@@ -109,7 +114,7 @@ struct Floor {
 TEST(Temporal, LightThatRestsConvergesToItsMean) {
   Floor floor;
   for (int i = 0; i < 120; ++i) floor.take({10, 20, 5});
-  const Vec3f mean = floor.mean();
+  const Vec3f mean = Floor::mean(floor.color);
   EXPECT_NEAR(mean.x, 10, 0.2);
   EXPECT_NEAR(mean.y, 20, 0.4);
   EXPECT_NEAR(mean.z, 5, 0.1);
@@ -122,10 +127,30 @@ TEST(Temporal, LightThatRestsConvergesToItsMean) {
 TEST(Temporal, LightOfRareSamplesIsKept) {
   Floor floor;
   for (int i = 0; i < 200; ++i) floor.take({10, 20, 5}, 0.02f);
-  EXPECT_LT(floor.mean().y, 19) << "the clamp alone loses light: is the test too easy?";
+  EXPECT_LT(Floor::mean(floor.color).y, 19) << "the clamp alone loses light: is the test too easy?";
   floor.restore();  // to the noisy mean of the last pictures; 1 standard error is 2 %
-  EXPECT_NEAR(floor.mean().y, 20, 1.6);
-  EXPECT_NEAR(floor.mean().x, 0.5 * double{floor.mean().y}, 1e-3);
+  const Vec3f mean = Floor::mean(floor.shown);
+  EXPECT_NEAR(mean.y, 20, 1.6);
+  EXPECT_NEAR(mean.x, 0.5 * double{mean.y}, 1e-3);
+}
+
+TEST(Temporal, DetailsThatADenoiserBlursAreShownIfTheyAreCertain) {
+  Floor floor;
+  const size_t spot = floor.picture.index(12, 8);
+  floor.denoised.assign(kPixels, {10, 10, 10});
+  floor.radiance.assign(kPixels, {10, 10, 10});
+  for (const size_t row : {0u, 1u, 2u})
+    for (const size_t column : {0u, 1u, 2u})
+      floor.radiance[spot + row * kWidth + column - kWidth - 1] = {100, 100, 100};
+  for (int i = 0; i < 12; ++i) floor.join();
+  floor.restore();
+  EXPECT_GT(floor.shown[spot].x, 80) << "light without noise is certain";
+  EXPECT_NEAR(floor.shown[spot + 6].x, 10, 1);
+  Floor noise;
+  noise.denoised.assign(kPixels, {10, 10, 10});
+  for (int i = 0; i < 40; ++i) noise.take({10, 10, 10}, 0.1f);
+  noise.restore();
+  for (const Vec3f& shown : noise.shown) EXPECT_NEAR(shown.x, 10, 2.5) << "noise is no detail";
 }
 
 TEST(Temporal, ALampDoesNotChangeTheWallBesideIt) {
@@ -139,7 +164,7 @@ TEST(Temporal, ALampDoesNotChangeTheWallBesideIt) {
   for (size_t i = 0; i < kPixels; ++i)
     if (floor.part[i] == 2) floor.color[i] *= 1.2f;  // the lamp's shown light is wrong
   floor.restore();
-  EXPECT_NEAR(floor.color[floor.picture.index(4, 8)].x, 10, 1);
+  EXPECT_NEAR(floor.shown[floor.picture.index(4, 8)].x, 10, 1);
 }
 
 TEST(Temporal, PixelsOfTwoObjectsKeepTheirLight) {
@@ -209,7 +234,7 @@ TEST(Temporal, ChangedLightIsFollowedSoonerThanByTheMeanAlone) {
   for (int i = 0; i < 100; ++i) floor.take({10, 10, 10});
   for (int i = 0; i < 16; ++i) floor.take({1, 1, 1});
   const double mean_alone = 1 + 9 * std::pow(1 - 1 / double{temporal::kMostAge}, 16);  // 7.4
-  EXPECT_LT(floor.mean().x, 0.5 * mean_alone);
+  EXPECT_LT(Floor::mean(floor.color).x, 0.5 * mean_alone);
 }
 
 TEST(Temporal, WhatIsNoLightIsBlack) {

@@ -31,8 +31,8 @@ struct PictureMemory {
   uint64_t frame = 0;    ///< memory of each CameraFrame
 };
 
-/// Longest path of a picture, in vertices: RenderOptions::max_depth, or by default 5, and 24 in
-/// scenes with media and in the interactive tier.
+/// Longest path of a picture, in vertices: RenderOptions::max_depth, or by default 5, 8 in the
+/// interactive tier, and 24 in scenes with media.
 int path_depth(const RenderOptions& render, bool has_media);
 
 class CameraSensor {

@@ -56,7 +56,7 @@ TEST_F(CudaInteractive, ASceneThatRestsConvergesToThePathTier) {
                 100 * (found.x / wanted.x - 1), 100 * (found.y / wanted.y - 1),
                 100 * (found.z / wanted.z - 1),
                 100 * error / static_cast<double>(film.pixel_count()) / length(wanted));
-    for (int k = 0; k < 3; ++k) EXPECT_NEAR(found[k] / wanted[k], 1, 0.03) << c.name;  // clamped
+    for (int k = 0; k < 3; ++k) EXPECT_NEAR(found[k] / wanted[k], 1, 0.05) << c.name;  // the bar
   }
 }
 
@@ -67,7 +67,7 @@ TEST_F(CudaInteractive, AMovingCameraKeepsTheLight) {
   Film reference;
   on_card(c)->render(view_of(c, 23, step), {.spp = 512, .exact_channels = false}, &reference);
   const Vec3f found = mean_light(film), wanted = mean_light(reference);
-  for (int k = 0; k < 3; ++k) EXPECT_NEAR(found[k] / wanted[k], 1, 0.03);
+  for (int k = 0; k < 3; ++k) EXPECT_NEAR(found[k] / wanted[k], 1, 0.05);
 }
 
 TEST_F(CudaInteractive, EveryRunGivesTheSameBits) {

@@ -14,6 +14,7 @@ struct TemporalPlanes {
   Vec3f* light = nullptr;     ///< mean over many pictures, over the surface's colour [cd/m²]
   Vec3f* recent = nullptr;    ///< the same over the last few [cd/m²]
   Vec3f* noisy = nullptr;     ///< mean over some, of light without any filter or clamp [cd/m²]
+  float* square = nullptr;    ///< the same of squared luminance [cd²/m⁴]
   float* age = nullptr;       ///< pictures that `light` is the mean of
   float* distance = nullptr;  ///< exact channel [m]
   uint32_t* part = nullptr;   ///< of part_of()
@@ -42,6 +43,7 @@ struct TemporalPicture {
   float weight = 1;              ///< of this picture, in usual ones: its samples over theirs
   BlockLight* blocks = nullptr;  ///< one per block of pixels, row by row
   Vec3f* color = nullptr;        ///< mean light of all pictures [cd/m²]
+  Vec3f* shown = nullptr;        ///< the same with its details and all of its light [cd/m²]
 
   static constexpr int kBlock = 8;  ///< [px]
   GLOAM_HD int block_columns() const { return (width + kBlock - 1) / kBlock; }
@@ -133,6 +135,7 @@ GLOAM_HD bool is_same(const TemporalPlanes& before, size_t j, const Sought& s) {
 
 struct Past {
   Vec3f light, recent, noisy;
+  float square = 0;
   float age = 0;  ///< 0 = unknown
 };
 
@@ -157,12 +160,14 @@ GLOAM_HD Past find_past(const TemporalPicture& p, int x, int y) {
     past.light += p.before.light[j] * weight;
     past.recent += p.before.recent[j] * weight;
     past.noisy += p.before.noisy[j] * weight;
+    past.square += p.before.square[j] * weight;
     past.age += p.before.age[j] * weight;
     total += weight;
   }
   constexpr float kLeastWeight = 0.01f;
   if (total < kLeastWeight) return {};
-  return {past.light / total, past.recent / total, past.noisy / total, past.age / total};
+  return {past.light / total, past.recent / total, past.noisy / total, past.square / total,
+          past.age / total};
 }
 
 /// Adds this picture's light of a pixel to its history.
@@ -173,12 +178,14 @@ GLOAM_HD void accumulate(const TemporalPicture& p, int x, int y) {
   const Vec3f fresh{light.x / color.x, light.y / color.y, light.z / color.z};
   const Past past = find_past(p, x, y);
   const float age = past.age + p.weight;
-  const auto mean = [&](Vec3f before, Vec3f now, float most) {
+  const Vec3f noisy = fireflies::sanitize(p.noisy[i]);
+  const auto mean = [&](auto before, auto now, float most) {
     return before + (now - before) * min(p.weight / min(age, most), 1);
   };
   p.now.light[i] = mean(past.light, fresh, kMostAge);
   p.now.recent[i] = mean(past.recent, fresh, kMostRecent);
-  p.now.noisy[i] = mean(past.noisy, fireflies::sanitize(p.noisy[i]), kMostNoisy);
+  p.now.noisy[i] = mean(past.noisy, noisy, kMostNoisy);
+  p.now.square[i] = mean(past.square, luminance(noisy) * luminance(noisy), kMostNoisy);
   p.now.age[i] = min(age, kMostAge);
 }
 

@@ -19,16 +19,44 @@ GLOAM_HD void each_of_block(const TemporalPicture& p, int column, int row, int m
   }
 }
 
+/// Standard errors by which the noisy light of a window may differ from the shown light by chance.
+inline constexpr float kMostErrors = 3;
+inline constexpr int kDetailRadius = 1;      ///< of the window [px]
+inline constexpr float kLeastDetailAge = 4;  ///< history from which errors are known [pictures]
+
+/// Makes the shown light of composed light: adds details of which the noisy light is certain, away
+/// from borders, whose pixels differ from picture to picture. After compose() of all pixels.
+GLOAM_HD void add_details(const TemporalPicture& p, int x, int y) {
+  const size_t i = p.index(x, y);
+  p.shown[i] = p.color[i];
+  Vec3f lost;
+  float variance = 0, count = 0;
+  for (int b = max(y - kDetailRadius, 0); b <= min(y + kDetailRadius, p.height - 1); ++b) {
+    for (int a = max(x - kDetailRadius, 0); a <= min(x + kDetailRadius, p.width - 1); ++a) {
+      const size_t j = p.index(a, b);
+      const float known = min(p.now.age[j], kMostNoisy), mean = luminance(p.now.noisy[j]);
+      if (known < kLeastDetailAge || (p.now.part[j] & kBorder) != 0) return;
+      lost += p.now.noisy[j] - p.color[j];
+      variance += max(p.now.square[j] - mean * mean, 0.0f) / (known - 1);
+      count += 1;
+    }
+  }
+  const float much = fabsf(luminance(lost)), error = kMostErrors * sqrtf(variance);
+  if (much <= error) return;
+  const Vec3f shown = p.color[i] + lost * ((1 - error / much) / count);
+  p.shown[i] = {max(shown.x, 0), max(shown.y, 0), max(shown.z, 0)};
+}
+
 /// Sums the block's noisy and shown light, in units of its brightest pixel: a bright window does
-/// not decide for the wall beside it. After compose() of all pixels.
+/// not decide for the wall beside it. After add_details() of all pixels.
 GLOAM_HD void sum_block(const TemporalPicture& p, int column, int row) {
   float brightest = 1e-9f;
   each_of_block(p, column, row, 2,
-                [&](size_t i) { brightest = max(brightest, luminance(p.color[i])); });
+                [&](size_t i) { brightest = max(brightest, luminance(p.shown[i])); });
   BlockLight sum;
   each_of_block(p, column, row, 0, [&](size_t i) {
     sum.noisy += p.now.noisy[i];
-    sum.shown += p.color[i];
+    sum.shown += p.shown[i];
   });
   p.block(column, row) = {sum.noisy / brightest, sum.shown / brightest, 1 / brightest};
 }
@@ -57,7 +85,7 @@ GLOAM_HD void restore(const TemporalPicture& p, int x, int y) {
       total += weight;
     }
   }
-  Vec3f& color = p.color[p.index(x, y)];
+  Vec3f& color = p.shown[p.index(x, y)];
   const Vec3f gain = light_gain(sum.noisy, sum.shown, kMostWindowGain);
   // Pixels far brighter than the blocks around show lamps or the sky, which have no noise.
   const float share = min(total / (sum.unit * max(luminance(color), 1e-9f)), 1.0f);
