@@ -183,6 +183,21 @@ TEST(Temporal, PixelsOfTwoObjectsKeepTheirLight) {
   EXPECT_NEAR(floor.color[floor.picture.index(15, 8)].x, 1000, 10);
 }
 
+TEST(Temporal, DarkPartsOfASurfaceTakeNoLightFromBrightOnes) {
+  Floor floor;
+  // A texture with dark spots passes before the camera: the light on it is even.
+  for (int k = 0; k < 12; ++k) {
+    for (size_t i = 0; i < kPixels; ++i) {
+      const float color = (i % kWidth + static_cast<size_t>(k)) % 4 == 0 ? 0.04f : 0.1f;
+      floor.albedo[i] = {color, color, color};
+      floor.radiance[i] = floor.albedo[i] * 100;
+    }
+    floor.join();
+  }
+  floor.restore();
+  for (const Vec3f& shown : floor.shown) EXPECT_LT(shown.x, 15) << "not 100 of white surfaces";
+}
+
 TEST(Temporal, MediaDoNotDependOnTheSurfacesBehind) {
   Floor floor;
   floor.clear.assign(kPixels, 0.1f);

@@ -89,15 +89,19 @@ GLOAM_HD uint32_t part_of(const TemporalPicture& p, int x, int y) {
   return inside ? p.part[i] : p.part[i] | kBorder;
 }
 GLOAM_HD bool is_sky(uint32_t part) { return (part & ~kBorder) == 0; }
+/// Whether the pixel shows two objects or colours. It has no like pixels around: they show other
+/// parts of either.
+GLOAM_HD bool is_mixed(uint32_t part) { return (part & kBorder) != 0 && part != kMediaPart; }
 /// Whether pixels of this value show no surface.
 GLOAM_HD bool is_empty(uint32_t part) { return is_sky(part) || part == kMediaPart; }
 
 /// Colour that the light of a pixel is divided by: never black. White where light is not reflected
-/// (sky, lamps, media), and where two objects share a pixel.
+/// (sky, media), and where two objects share a pixel. It must not jump within a surface, whose
+/// pixels exchange their quotients.
 GLOAM_HD Vec3f divisor(const TemporalPicture& p, size_t i) {
   const Vec3f albedo = p.albedo[i], white{1, 1, 1};
   const uint32_t part = p.now.part[i];
-  if (is_empty(part) || (part & kBorder) != 0 || max_component(albedo) < kLeastColor) return white;
+  if (is_empty(part) || is_mixed(part)) return white;
   const Vec3f color{max(albedo.x, kLeastColor), max(albedo.y, kLeastColor),
                     max(albedo.z, kLeastColor)};
   return p.clear == nullptr ? color : lerp(white, color, p.clear[i]);

@@ -30,6 +30,7 @@ GLOAM_HD float likeness(const TemporalPicture& p, size_t j, size_t i) {
 /// lamps have moved. After accumulate() of all pixels.
 GLOAM_HD void settle(const TemporalPicture& p, int x, int y) {
   const size_t i = p.index(x, y);
+  if (is_mixed(p.now.part[i])) return;
   Vec3f sum, squares;
   float count = 0;
   for (int k = 0; k < (2 * kWindow + 1) * (2 * kWindow + 1); ++k) {
@@ -62,7 +63,7 @@ GLOAM_HD Vec3f shown_light(const TemporalPicture& p, int x, int y) {
   const float reach = kWidestSpread * max(1 - p.now.age[i] / settled, 0);
   Vec3f sum = p.now.light[i];
   float total = 1;
-  for (int k = 1; !is_sky(part) && reach > 0 && k <= kSpreadTaps; ++k) {
+  for (int k = 1; !is_sky(part) && !is_mixed(part) && reach > 0 && k <= kSpreadTaps; ++k) {
     constexpr float kGoldenTurn = 0.381966f;  // a spiral of evenly dense places
     const float share = static_cast<float>(k) / kSpreadTaps, r = reach * sqrtf(share);
     const float turns = kGoldenTurn * static_cast<float>(k);

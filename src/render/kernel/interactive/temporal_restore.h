@@ -29,22 +29,23 @@ inline constexpr float kLeastDetailAge = 4;  ///< history from which errors are 
 GLOAM_HD void add_details(const TemporalPicture& p, int x, int y) {
   const size_t i = p.index(x, y);
   p.shown[i] = p.color[i];
-  Vec3f lost;
-  float variance = 0, count = 0;
+  Vec3f noisy, composed;
+  float variance = 0;
   for (int b = max(y - kDetailRadius, 0); b <= min(y + kDetailRadius, p.height - 1); ++b) {
     for (int a = max(x - kDetailRadius, 0); a <= min(x + kDetailRadius, p.width - 1); ++a) {
       const size_t j = p.index(a, b);
       const float known = min(p.now.age[j], kMostNoisy), mean = luminance(p.now.noisy[j]);
       if (known < kLeastDetailAge || (p.now.part[j] & kBorder) != 0) return;
-      lost += p.now.noisy[j] - p.color[j];
+      noisy += p.now.noisy[j];
+      composed += p.color[j];
       variance += max(p.now.square[j] - mean * mean, 0.0f) / (known - 1);
-      count += 1;
     }
   }
+  const Vec3f lost = noisy - composed;
   const float much = fabsf(luminance(lost)), error = kMostErrors * sqrtf(variance);
   if (much <= error) return;
-  const Vec3f shown = p.color[i] + lost * ((1 - error / much) / count);
-  p.shown[i] = {max(shown.x, 0), max(shown.y, 0), max(shown.z, 0)};
+  const Vec3f gain = light_gain(composed + lost * (1 - error / much), composed, kMostWindowGain);
+  p.shown[i] = {p.color[i].x * gain.x, p.color[i].y * gain.y, p.color[i].z * gain.z};
 }
 
 /// Sums the block's noisy and shown light, in units of its brightest pixel: a bright window does
