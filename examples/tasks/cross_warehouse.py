@@ -14,7 +14,7 @@ from pathlib import Path
 import gloam
 import numpy as np
 from dynamic_window import RADIUS, DynamicWindow
-from gloam.envs.free_space import FreeSpace
+from gloam.navigation.free_space import FreeSpace
 from route import Points, Pursuit, bearing, shortest
 
 LIDAR_AT = np.array([-0.045, 0.0])  # in the base's frame [m]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
-from gloam.envs.free_space import FreeSpace
+from gloam.navigation.free_space import FreeSpace
 from numpy.typing import ArrayLike, NDArray
 
 Points = NDArray[np.float64]

@@ -13,7 +13,7 @@ from pathlib import Path
 
 import gloam
 import numpy as np
-from gloam.envs.free_space import FreeSpace
+from gloam.navigation.free_space import FreeSpace
 from route import Points, Pursuit, bearing, nearest_free, shortest
 
 SPEED, AHEAD, RADIUS = 0.7, 0.45, 0.3  # m/s, m, m: of walking, of pure pursuit, between the route and obstacles

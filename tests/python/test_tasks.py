@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 pytest.importorskip("gymnasium")
-from gloam.envs.free_space import FreeSpace  # noqa: E402
+from gloam.navigation.free_space import FreeSpace  # noqa: E402
 
 import gloam  # noqa: E402
 

@@ -17,7 +17,7 @@ from gymnasium import spaces
 
 import gloam
 from gloam.envs.assets import asset_folder
-from gloam.envs.free_space import FreeSpace
+from gloam.navigation.free_space import FreeSpace
 from gloam.envs.noise import Array
 from gloam.envs.sources import CameraSource, LidarSource
 from gloam.envs.task import Outcome, SceneSource, Task, TaskWorld

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from . import planners
+from .driver import Driver, PlannerStats, Rig
+from .follower import WaypointFollower
 from .planner import (
     Answer,
     Arrived,
@@ -18,12 +21,17 @@ from .planner import (
 __all__ = [
     "Answer",
     "Arrived",
+    "Driver",
     "Observation",
     "Planner",
+    "PlannerStats",
+    "Rig",
     "Task",
     "Velocity",
+    "WaypointFollower",
     "Waypoints",
     "make_planner",
     "planner_names",
+    "planners",
     "register_planner",
 ]

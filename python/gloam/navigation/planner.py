@@ -29,7 +29,7 @@ class Observation:
     """Data of one instant. Fields that the planner does not need are None.
 
     time: simulation time [s]; image: (H, W, 3) uint8 sRGB; depth: (H, W) [m], inf = nothing; scan: (n, 3) points of a
-    LiDAR in the robot's frame, x ahead, z up [m]; pose: (x, y, yaw) in the world [m, rad]; velocity: (vx, vy, yaw rate)
+    LiDAR from the robot's origin, x in its heading, z up: levelled as by an IMU [m]; pose: (x, y, yaw) in the world [m, rad]; velocity: (vx, vy, yaw rate)
     in the robot's frame [m/s, rad/s].
     """
 

@@ -1,0 +1,5 @@
+"""Planners. Importing this package registers them."""
+
+from . import geometric, simple
+
+__all__ = ["geometric", "simple"]

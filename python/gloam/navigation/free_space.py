@@ -8,7 +8,7 @@ from collections.abc import Collection
 import numpy as np
 
 import gloam
-from gloam.envs.noise import Array
+from gloam.navigation.planner import Array
 
 _PLANE, _HFIELD = 0, 1  # mjtGeom
 _FLOOR = re.compile(r"/floor_\d+/")  # of generated places
@@ -56,10 +56,11 @@ class FreeSpace:
         for box in boxes:
             blocked |= _distance_to_box(points, box) < radius
         space = cls((float(low[0]), float(low[1])), cell, blocked)
-        space._keep_largest_region()
+        space.keep_largest_region()
         return space
 
-    def _keep_largest_region(self) -> None:
+    def keep_largest_region(self) -> None:
+        """Blocks all cells outside the largest connected region. Errors: UsageError if no cell is free."""
         left = ~self.blocked
         best = np.zeros_like(left)
         while left.any():
@@ -132,6 +133,11 @@ class FreeSpace:
             raise gloam.UsageError(f"there is no free place {reach[0]} to {reach[1]} m from the goal")
         row, column = cells[rng.integers(len(cells))]
         return self.origin + self.cell * np.array([column, row], dtype=np.float64)
+
+
+def robot_bodies(world: gloam.World, robot: str) -> list[int]:
+    """MuJoCo ids of a robot's bodies, whose names begin with its name."""
+    return [i for i, name in enumerate(world.bodies) if name.startswith(f"{robot}/")]
 
 
 def _boxes(world: gloam.World, ignore: Collection[int], heights: tuple[float, float]) -> tuple[Array, Array]:

@@ -1,0 +1,1 @@
+"""Benchmark of visual navigation: `gloam bench nav` (docs/navigation.md)."""

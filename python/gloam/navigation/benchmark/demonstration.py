@@ -1,0 +1,65 @@
+"""Maps of the benchmark: images along the path from start to goal, in clear air."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import numpy as np
+
+import gloam
+
+from ..topological_map import MapSource, Node, TopologicalMap
+from .places import CAMERA, ROBOT, TOP_SPEED, Pair, world_of
+
+SPACING = 0.5  # of nodes [m]
+_SIZE = (160, 120)  # [px]
+
+
+def poses_along(pair: Pair, spacing: float = SPACING) -> list[tuple[float, float, float]]:
+    """(x, y, yaw) every `spacing` metres from start to goal; the heading is that of the path ahead [m, rad]."""
+    points = np.array(pair.path)
+    lengths = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(points, axis=0).T))])
+    count = max(2, math.ceil(float(lengths[-1]) / spacing) + 1)
+    at = np.linspace(0.0, float(lengths[-1]), count)
+    x, y = np.interp(at, lengths, points[:, 0]), np.interp(at, lengths, points[:, 1])
+    ahead = np.minimum(at + 0.6, lengths[-1])
+    behind = ahead - 0.6  # near the goal the heading is that of the last part
+    dx = np.interp(ahead, lengths, points[:, 0]) - np.interp(behind, lengths, points[:, 0])
+    dy = np.interp(ahead, lengths, points[:, 1]) - np.interp(behind, lengths, points[:, 1])
+    return [(float(a), float(b), float(c)) for a, b, c in zip(x, y, np.arctan2(dy, dx), strict=True)]
+
+
+def demonstrate(place: str, pair: Pair) -> TopologicalMap:
+    """The map of a pair: the robot stands at each node, at level none. The times are those of a walk at TOP_SPEED."""
+    world = world_of(place, "none")
+    nodes: list[Node] = []
+    with gloam.Simulation(world) as sim:
+        joint = sim.world.joints.index(f"{ROBOT}/root") if f"{ROBOT}/root" in sim.world.joints else _free_joint(sim)
+        first = int(sim.memory.array("jnt_qposadr")[joint])
+        rest = np.array(sim.memory.array("qpos"))
+        for k, (x, y, yaw) in enumerate(poses_along(pair)):
+            qpos = rest.copy()
+            qpos[first : first + 2] = x, y
+            qpos[first + 3 : first + 7] = gloam.yaw_quaternion(yaw)
+            frame = sim.cameras[CAMERA].render(("rgb",), width=_SIZE[0], height=_SIZE[1], qpos=qpos, tier="interactive")
+            nodes.append(Node(np.array(frame.rgb), (x, y, yaw), k * SPACING / TOP_SPEED))
+    return TopologicalMap(nodes, MapSource.of(world, CAMERA))
+
+
+def _free_joint(sim: gloam.Simulation) -> int:
+    kinds, bodies = sim.memory.array("jnt_type"), sim.memory.array("jnt_bodyid")
+    names = sim.world.bodies
+    return next(i for i, kind in enumerate(kinds) if kind == 0 and names[int(bodies[i])].startswith(f"{ROBOT}/"))
+
+
+def map_of(place: str, pair: Pair, folder: Path) -> TopologicalMap:
+    """The map in `folder`, which is made if it is missing."""
+    if not folder.is_dir():
+        part = folder.with_name(f".{folder.name}.part")
+        demonstrate(place, pair).save(part)
+        try:
+            part.rename(folder)
+        except OSError:  # another process was faster
+            pass
+    return TopologicalMap.load(folder)

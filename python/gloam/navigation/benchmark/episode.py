@@ -1,0 +1,194 @@
+"""One episode: a planner drives the quadruped from a start to a goal, and everything is measured on the way."""
+
+from __future__ import annotations
+
+import json
+import math
+import resource
+import time
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+import gloam
+
+from ..driver import Driver, Rig
+from ..grid import Point
+from ..planner import Task, make_planner
+from .demonstration import map_of
+from .places import CAMERA, LIDAR, RADIUS, ROBOT, TOP_SPEED, Pair, world_of
+
+LOG_TOPICS = ("/clock", "/tf*")
+_STAND = 0.3  # the quadruped's height at the start [m]
+_STUCK_TIME, _STUCK_REACH = 15.0, 0.25  # an episode ends when the robot has stayed within so many metres [s], [m]
+_LOW = 0.05  # contacts below are steps on rugs and sills [m]
+_FORGET = 0.5  # a body counts again after so long without contact [s], as in docs/metrics.md
+
+
+@dataclass(frozen=True)
+class EpisodeSpec:
+    """planner, place, level, number: the key of the episode; seed: of the benchmark; tier: of images; options: of the
+    planner; log: whether run.mcap is written."""
+
+    planner: str
+    place: str
+    level: str
+    number: int
+    seed: int = 1
+    tier: str = "interactive"
+    options: tuple[tuple[str, Any], ...] = ()
+    log: bool = True
+
+    @property
+    def pair_seed(self) -> int:
+        """The seed of start and goal: shared by planners and levels, so that episodes can be compared in pairs."""
+        return self.seed * 100_003 + self.number
+
+    @property
+    def path(self) -> Path:
+        """Its folder in `episodes` of the results."""
+        return Path(self.planner) / self.place / self.level / f"{self.number:04}"
+
+
+class Touched:
+    """Counts collisions by object: a body counts once, and again after half a second without contact."""
+
+    def __init__(self) -> None:
+        self.by_object: dict[str, int] = {}
+        self.last: dict[str, float] = {}
+
+    def sample(self, sim: gloam.Simulation) -> None:
+        """Reads the contacts of this instant. Feet and trunk on level ground do not count."""
+        for contact in sim.contacts():
+            names = contact["geoms"]
+            own = [name.startswith(f"{ROBOT}/") for name in names]
+            is_ground = abs(float(np.asarray(contact["normal"])[2])) > math.sqrt(0.5)
+            if own[0] == own[1] or is_ground or float(np.asarray(contact["position"])[2]) < _LOW or float(np.linalg.norm(contact["force"])) <= 0:
+                continue
+            thing = _object_of(names[1] if own[0] else names[0])
+            if sim.time - self.last.get(thing, -math.inf) > _FORGET:
+                self.by_object[thing] = self.by_object.get(thing, 0) + 1
+            self.last[thing] = sim.time
+
+    def total(self) -> int:
+        """All collisions."""
+        return sum(self.by_object.values())
+
+    def is_touching(self, now: float) -> bool:
+        """Whether anything was touched within the last five seconds."""
+        return any(now - then < 5.0 for then in self.last.values())
+
+
+def _object_of(geom: str) -> str:
+    """The kind of object of a geom's name: living/chair_2/collider_1 is a chair."""
+    parts = geom.split("/")
+    name = parts[-2] if len(parts) > 1 else geom
+    kind, _, number = name.rpartition("_")
+    return kind if number.isdigit() and kind else name or "unnamed"
+
+
+class Watch:
+    """Follows an episode; called every 50 ms. True ends it."""
+
+    def __init__(self, goal: Point) -> None:
+        self.goal, self.touched = goal, Touched()
+        self.length, self.outcome = 0.0, ""
+        self.places: list[tuple[float, Point]] = []
+        self.ranges: list[float] = []
+
+    def __call__(self, sim: gloam.Simulation) -> bool:
+        pose = sim.robots[ROBOT].pose
+        here = (float(pose.p[0]), float(pose.p[1]))
+        if self.places:
+            self.length += math.dist(here, self.places[-1][1])
+        self.places.append((sim.time, here))
+        self.touched.sample(sim)
+        if math.dist(here, self.goal) < RADIUS:
+            self.outcome = "success"
+        elif float(np.asarray(pose.R)[2, 2]) < 0.5:
+            self.outcome = "fell"
+        elif self._stays(sim.time, here):
+            self.outcome = "collided" if self.touched.is_touching(sim.time) else "stuck"
+        return self.outcome != ""
+
+    def _stays(self, now: float, here: Point) -> bool:
+        recent = [place for then, place in self.places if then > now - _STUCK_TIME]
+        return now > _STUCK_TIME and max(math.dist(place, here) for place in recent) < _STUCK_REACH
+
+
+def run_episode(spec: EpisodeSpec, pair: Pair, folder: Path, maps: Path) -> dict[str, Any]:
+    """Runs it and writes episode.json and run.mcap into a new folder. An exception of the planner's creation or reset
+    becomes an episode of outcome "error"."""
+    begin, cpu = time.perf_counter(), _cpu_seconds()
+    limit = 10.0 + 2.5 * pair.shortest / TOP_SPEED
+    result: dict[str, Any] = {
+        "planner": spec.planner, "scene": spec.place, "level": spec.level, "episode": spec.number, "seed": spec.pair_seed,
+        "start": list(pair.start), "goal": list(pair.goal), "shortest": pair.shortest, "limit": limit, "tier": spec.tier,
+    }  # fmt: skip
+    folder.mkdir(parents=True)
+    try:
+        result |= _drive(spec, pair, folder, maps, limit)
+    except (gloam.Error, ValueError, TypeError, OSError) as error:
+        result |= _failed(f"{type(error).__name__}: {error}", math.dist(pair.start[:2], pair.goal))
+    result |= {
+        "wall_seconds": time.perf_counter() - begin,
+        "cpu_seconds": _cpu_seconds() - cpu,
+        "log": "run.mcap" if (folder / "run.mcap").is_file() else None,
+        "video": None,
+    }
+    (folder / "episode.json").write_text(json.dumps(result, indent=1, sort_keys=True) + "\n", encoding="utf-8")
+    return result
+
+
+def _drive(spec: EpisodeSpec, pair: Pair, folder: Path, maps: Path, limit: float) -> dict[str, Any]:
+    world = world_of(spec.place, spec.level)
+    planner = make_planner(spec.planner, **dict(spec.options))
+    map_ = map_of(spec.place, pair, maps / spec.place / f"{spec.number:04}")
+    task = Task(ROBOT, spec.pair_seed, pair.goal, map_, world, TOP_SPEED, RADIUS)
+    with gloam.Simulation(world, seed=spec.pair_seed) as sim:
+        rig = Rig(ROBOT, CAMERA, LIDAR, {"tier": spec.tier})
+        driver = Driver(sim, rig, planner)
+        watch = Watch(pair.goal)
+        try:
+            if spec.log:
+                with sim.record(folder / "run.mcap", LOG_TOPICS, overwrite=True):
+                    _walk(sim, driver, task, pair, limit, watch)
+            else:
+                _walk(sim, driver, task, pair, limit, watch)
+        finally:
+            driver.close()
+        return _measured(sim, driver, watch)
+
+
+def _walk(sim: gloam.Simulation, driver: Driver, task: Task, pair: Pair, limit: float, watch: Watch) -> None:
+    sim.robots[ROBOT].place((pair.start[0], pair.start[1], _STAND), yaw=pair.start[2])
+    sim.run_until(time=1.0)  # it comes to rest on its feet
+    driver.run(task, 1.0 + limit, watch)
+
+
+def _measured(sim: gloam.Simulation, driver: Driver, watch: Watch) -> dict[str, Any]:
+    end, here = watch.places[-1] if watch.places else (sim.time, watch.goal)
+    left = math.dist(here, watch.goal)
+    outcome = watch.outcome or ("lost" if driver.has_arrived else "timed_out")
+    stats = driver.stats
+    return {
+        "outcome": outcome, "success": outcome == "success", "time": end - 1.0, "path_length": watch.length,
+        "final_distance": left, "collisions": watch.touched.total(), "collisions_by_object": watch.touched.by_object,
+        "visibility_mean": None, "visibility_min": None, "plans": stats.plans, "late": stats.late,
+        "invalid": stats.invalid, "message": stats.error, "hash": f"{sim.hash:#018x}",
+    }  # fmt: skip
+
+
+def _failed(message: str, distance: float) -> dict[str, Any]:
+    return {
+        "outcome": "error", "success": False, "time": 0.0, "path_length": 0.0, "final_distance": distance,
+        "collisions": 0, "collisions_by_object": {}, "visibility_mean": None, "visibility_min": None, "plans": 0,
+        "late": 0, "invalid": 0, "message": message, "hash": "",
+    }  # fmt: skip
+
+
+def _cpu_seconds() -> float:
+    usage = resource.getrusage(resource.RUSAGE_SELF)
+    return usage.ru_utime + usage.ru_stime

@@ -1,0 +1,114 @@
+"""Places of the benchmark, and pairs of start and goal that are free and connected at every level."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import Any
+
+import numpy as np
+
+import gloam
+
+from ..free_space import FreeSpace, robot_bodies
+from ..grid import Grid, Point, length_of
+from ..planner import Array
+
+LEVELS = ("none", "minor", "major")
+ROBOT, CAMERA, LIDAR = "go", "go/front", "lidar"
+TOP_SPEED = 0.5  # [m/s]
+RADIUS = 1.0  # at which a goal counts as reached [m]
+_CLEARANCE = 0.3  # of start, goal and the path between them [m]
+_CELL = 0.1  # [m]
+
+# Seeds of the training places of Gloam's own policy are 1000 and above (training/navigation).
+PLACES: dict[str, dict[str, Any]] = {
+    "house": {"house": {"seed": 3, "rooms": 6}},
+    "warehouse": {"warehouse": {"seed": 2, "length": 30, "width": 20}},
+    "office": {"office": {"seed": 2}},
+    "tunnel": {"tunnel": {"seed": 1}},
+}
+
+
+def scene_of(place: str, level: str) -> gloam.Scene:
+    """The scene of a place at a level of adversity, with the quadruped and its walking policy. Errors: NotFoundError."""
+    for name, names, kind in ((place, PLACES, "scene"), (level, LEVELS, "level")):
+        if name not in names:
+            raise gloam.NotFoundError(f"there is no {kind} '{name}'; there are: {', '.join(names)}")
+    assets = gloam.home() / "assets"
+    robot = {
+        "name": ROBOT,
+        "file": str(assets / "robots/quadruped/quadruped.xml"),
+        "keyframe": "home",
+        "controller": {
+            "type": "policy",
+            "network": str(assets / "policies/quadruped/policy.onnx"),
+            "settings": str(assets / "policies/quadruped/policy.toml"),
+        },
+    }
+    tables: dict[str, Any] = {
+        "scene": {"name": place},
+        "environment": PLACES[place],
+        "robot": [robot],
+        "lidar": [{"name": LIDAR, "body": f"{ROBOT}/lidar_mount", "preset": "VLP-16", "rate": 10}],
+    }
+    if level != "none":
+        tables["adversity"] = {"level": level}
+    return gloam.Scene.from_dict(tables)
+
+
+@lru_cache(maxsize=2)
+def world_of(place: str, level: str) -> gloam.World:
+    """The compiled scene."""
+    return scene_of(place, level).compile()
+
+
+@dataclass(frozen=True)
+class Pair:
+    """start: (x, y, yaw) [m, rad]; goal: (x, y) [m]; path: from one to the other [m]; shortest: its length [m]."""
+
+    start: tuple[float, float, float]
+    goal: Point
+    path: tuple[Point, ...]
+    shortest: float
+
+
+class Course:
+    """Free space of a place that all levels share: clutter differs between levels."""
+
+    def __init__(self, place: str, levels: tuple[str, ...] = LEVELS) -> None:
+        spaces = []
+        for level in levels:
+            world = world_of(place, level)
+            spaces.append(FreeSpace.of(world, robot_bodies(world, ROBOT), _CLEARANCE, cell=_CELL))
+        blocked = np.logical_or.reduce([space.blocked for space in spaces])
+        self._space = FreeSpace((float(spaces[0].origin[0]), float(spaces[0].origin[1])), _CELL, blocked)
+        self._space.keep_largest_region()
+        self.grid = Grid((float(spaces[0].origin[0]), float(spaces[0].origin[1])), _CELL, self._space.blocked)
+        self._cost: Array = 2.0 * (1 - self.grid.clearance(0.5) / 0.5)
+
+    def pair(self, seed: int, reach: tuple[float, float] = (4.0, 12.0)) -> Pair:
+        """The pair of a seed, with a path of `reach` [m]. Errors: UsageError if the place has no such paths."""
+        rng = np.random.Generator(np.random.Philox(key=seed))
+        for _ in range(100):
+            goal = self._space.sample(rng)
+            field = self._space.distances(goal)
+            if ((field >= reach[0]) & (field <= reach[1])).any():
+                break
+        else:
+            raise gloam.UsageError(f"the place has no paths of {reach[0]} to {reach[1]} m")
+        start = self._space.sample(rng, field, reach)
+        begin, end = (float(start[0]), float(start[1])), (float(goal[0]), float(goal[1]))
+        path = smoothed(self.grid.path(begin, end, self._cost))
+        ahead = path[min(8, len(path) - 1)]
+        yaw = math.atan2(ahead[1] - begin[1], ahead[0] - begin[0])
+        return Pair((*begin, yaw), end, tuple(path), length_of(self.grid.path(begin, end)))
+
+
+def smoothed(path: list[Point], passes: int = 12) -> list[Point]:
+    """The same path without the corners of a grid: its ends stay."""
+    points = np.array(path)
+    for _ in range(passes):
+        points[1:-1] = 0.25 * points[:-2] + 0.5 * points[1:-1] + 0.25 * points[2:]
+    return [(float(x), float(y)) for x, y in points]
