@@ -49,8 +49,8 @@ build/release). Without TARGET it builds the program. All other commands of ./gl
 END
 }
 
-python_help() {  # python_help FILE: the help of a tool in Python, else this script's
-  PYTHONDONTWRITEBYTECODE=1 python3 "$1" --help 2>/dev/null || script_help
+python_help() {  # python_help FILE ARG…: the help of a tool in Python, else this script's
+  PYTHONDONTWRITEBYTECODE=1 python3 "$@" --help 2>/dev/null || script_help
 }
 
 answer_help() {  # answer_help ARG…
@@ -58,7 +58,10 @@ answer_help() {  # answer_help ARG…
   case "${1:-}" in
     setup) setup_help ;;
     test) python_help "$root/tests/run.py" ;;
-    bench) python_help "$root/bench/run.py" ;;
+    bench)
+      if [ "${2:-}" = nav ]; then python_help "$root/tools/navigation/commands.py" bench; else python_help "$root/bench/run.py"; fi
+      ;;
+    map | navigate) python_help "$root/tools/navigation/commands.py" "$1" ;;
     pack) python_help "$root/tools/pack.py" ;;
     wheel) python_help "$root/tools/wheel.py" ;;
     mitsuba) python_help "$root/bench/mitsuba/judge.py" ;;

@@ -19,6 +19,7 @@
 #include "gloam/scene/material.h"
 #include "gloam/scene/metric.h"
 #include "gloam/scene/object.h"
+#include "gloam/scene/planner.h"
 #include "gloam/scene/probe.h"
 #include "gloam/scene/robot.h"
 #include "gloam/scene/robot_model.h"
@@ -72,6 +73,7 @@ struct Scene {
   std::vector<TopicOptions> topics = {};
   std::vector<MetricOptions> metrics = {};
   std::vector<GoalOptions> goals = {};
+  std::optional<PlannerOptions> planner = {};
   RecordOptions record = {};
   BridgeOptions bridge = {};
   /// Path of a bare MJCF or URDF, which is used unchanged: no prefix, no additions, original

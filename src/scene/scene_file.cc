@@ -43,6 +43,10 @@ Status find_files(const FileFinder& finder, Scene* scene) {
   }
   for (AgentOptions& agent : scene->agents) GLOAM_TRY_STATUS(finder.find(&agent.tree, agent.loc));
   if (scene->sky) GLOAM_TRY_STATUS(finder.find(&scene->sky->file, scene->sky->loc));
+  if (scene->planner) {
+    GLOAM_TRY_STATUS(finder.find(&scene->planner->map, scene->planner->loc));
+    GLOAM_TRY_STATUS(finder.find(&scene->planner->weights, scene->planner->loc));
+  }
   for (VolumeOptions& volume : scene->volumes) {
     GLOAM_TRY_STATUS(finder.find(&volume.grid, volume.loc));
     GLOAM_TRY_STATUS(finder.find(&volume.temperature_grid, volume.loc));

@@ -21,6 +21,7 @@
 #include "scene/options/material_fields.h"
 #include "scene/options/metric_fields.h"
 #include "scene/options/object_fields.h"
+#include "scene/options/planner_fields.h"
 #include "scene/options/probe_fields.h"
 #include "scene/options/robot_fields.h"
 #include "scene/options/run_fields.h"
@@ -80,6 +81,7 @@ void visit_tables(Visitor& v, SceneHeader& header, Scene& scene) {
   v("topic", scene.topics, FieldRule{});
   v("metric", scene.metrics, FieldRule{});
   v("goal", scene.goals, FieldRule{});
+  v("planner", scene.planner, FieldRule{});
   v("bridge", scene.bridge, FieldRule{});
 }
 

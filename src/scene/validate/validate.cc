@@ -19,6 +19,7 @@
 #include "scene/validate/validate_imager.h"
 #include "scene/validate/validate_lidar.h"
 #include "scene/validate/validate_light.h"
+#include "scene/validate/validate_planner.h"
 #include "scene/validate/validate_probe.h"
 
 namespace gloam {
@@ -218,6 +219,7 @@ Status validate_scene(const Scene& scene) {
   GLOAM_TRY_STATUS(refuse_duplicates(scene.lights, "light"));
   for (const LightOptions& light : scene.lights) GLOAM_TRY_STATUS(validate_light(light));
   if (scene.sky) GLOAM_TRY_STATUS(validate_sky(*scene.sky));
+  if (scene.planner) GLOAM_TRY_STATUS(validate_planner(*scene.planner, scene.robots));
   if (scene.blackout) GLOAM_TRY_STATUS(validate_blackout(*scene.blackout));
   GLOAM_TRY_STATUS(refuse_duplicates(scene.volumes, "volume"));
   for (const VolumeOptions& volume : scene.volumes) GLOAM_TRY_STATUS(validate_volume(volume));

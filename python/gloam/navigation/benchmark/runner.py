@@ -6,14 +6,12 @@ and runs each episode once.
 
 from __future__ import annotations
 
-import argparse
 import fcntl
 import json
 import multiprocessing
 import os
 import platform
 import shutil
-import sys
 import time
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
@@ -168,44 +166,3 @@ def _duration(seconds: float) -> str:
     if seconds < 100:
         return f"{seconds:.0f} s"
     return f"{seconds / 60:.0f} min" if seconds < 6000 else f"{seconds / 3600:.1f} h"
-
-
-def main(arguments: list[str] | None = None) -> int:
-    """The command line."""
-    parser = argparse.ArgumentParser(
-        prog="gloam bench nav",
-        description="Benchmark of visual navigation: planners x scenes x adversity levels (docs/navigation.md).",
-        epilog="Examples:\n  gloam bench nav --n 5 --planners route,lidar,gloam\n  gloam bench nav --out results/nav --scenes house --levels none,major",
-        formatter_class=argparse.RawDescriptionHelpFormatter,
-    )
-    parser.add_argument("--planners", default="straight,replay,lidar,route,gloam", help="names, separated by commas; default: %(default)s")
-    parser.add_argument("--scenes", default="house,warehouse", help=f"of {', '.join(PLACES)}; default: %(default)s")
-    parser.add_argument("--levels", default=",".join(LEVELS), help="default: %(default)s")
-    parser.add_argument("--n", type=int, default=100, help="episodes of each planner, scene and level; default: %(default)s")
-    parser.add_argument("--seed", type=int, default=1, help="default: %(default)s")
-    parser.add_argument("--tier", default="interactive", choices=("interactive", "path", "direct"), help="of images; default: %(default)s")
-    parser.add_argument("--out", default="results/navigation", help="folder of the results, continued if it exists; default: %(default)s")
-    parser.add_argument("--workers", type=int, default=0, help="processes; default: one for two processors")
-    parser.add_argument("--no-log", action="store_true", help="do not record a log of each episode")
-    parser.add_argument("--no-report", action="store_true", help="run the episodes only")
-    given = parser.parse_args(arguments)
-    split = {name: tuple(filter(None, getattr(given, name).split(","))) for name in ("planners", "scenes", "levels")}
-    request = Request(**split, episodes=given.n, seed=given.seed, tier=given.tier, log=not given.no_log)
-    try:
-        run(request, Path(given.out), given.workers, lambda text: print(text, file=sys.stderr, flush=True))
-        if not given.no_report:
-            from .report import write_report
-
-            for file in write_report(Path(given.out)):
-                print(file)
-    except gloam.Error as error:
-        print(f"gloam: error: {error}", file=sys.stderr)
-        return 2 if isinstance(error, gloam.UsageError) else 1
-    except KeyboardInterrupt:
-        print(f"gloam: interrupted; repeat the command to continue in {given.out}", file=sys.stderr)
-        return 130
-    return 0
-
-
-if __name__ == "__main__":
-    sys.exit(main())

@@ -1,5 +1,5 @@
 """Planners. Importing this package registers them."""
 
-from . import geometric, simple
+from . import external, geometric, simple
 
-__all__ = ["geometric", "simple"]
+__all__ = ["external", "geometric", "simple"]

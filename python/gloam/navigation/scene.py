@@ -1,0 +1,89 @@
+"""Planners of scenes: the table [planner], and its run."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import gloam
+
+from .driver import Driver, Rig
+from .planner import Planner, Task, make_planner
+from .topological_map import TopologicalMap
+
+
+def planner_of(scene: gloam.Scene) -> Planner:
+    """The planner of a scene's [planner]. Errors: UsageError without one; as make_planner()."""
+    table = _table(scene)
+    options: dict[str, Any] = {key: table[key] for key in ("weights", "command", "address") if table.get(key)}
+    planner = make_planner(table["type"], **options)
+    if table.get("rate"):
+        planner.rate = float(table["rate"])
+    if table.get("latency", -1.0) >= 0:
+        planner.latency = float(table["latency"])
+    return planner
+
+
+def task_of(scene: gloam.Scene, world: gloam.World) -> Task:
+    """The task of a scene's planner: the first [[goal]] of its robot, and its map. Errors: UsageError."""
+    table = _table(scene)
+    robot = _robot(table, world)
+    goals = [goal for goal in _tables(scene).get("goal", []) if goal.get("robot", robot) == robot]
+    goal = goals[0] if goals else None
+    map_ = TopologicalMap.load(_resolved(scene, table["map"])) if table.get("map") else None
+    if map_ is not None:
+        map_.check_scene(world)
+    return Task(
+        robot,
+        int(scene["sim.seed"]),
+        None if goal is None else (float(goal["position"][0]), float(goal["position"][1])),
+        map_,
+        world,
+        float(table.get("top_speed", 0.4)),
+        float(goal.get("radius", 0.5)) if goal else 0.5,
+    )
+
+
+def rig_of(scene: gloam.Scene, world: gloam.World) -> Rig:
+    """The parts of the robot that the planner uses: as [planner] names them, or the first ones."""
+    table = _table(scene)
+    robot = _robot(table, world)
+    cameras = [name for name in world.cameras if name.startswith(f"{robot}/")]
+    camera = table.get("camera") or (cameras[0] if cameras else "")
+    lidar = table.get("lidar") or (world.lidars[0] if world.lidars else "")
+    for kind, name, known in (("camera", camera, world.cameras), ("LiDAR", lidar, world.lidars)):
+        if name and name not in known:
+            raise gloam.NotFoundError(f"[planner] {kind} '{name}' does not exist; there are: {', '.join(known) or 'none'}")
+    return Rig(robot, camera, lidar)
+
+
+def drive(sim: gloam.Simulation, until: float) -> Driver:
+    """Runs a simulation until the time [s] with the planner of its scene. Returns the closed driver, with its
+    statistics. Errors: as planner_of(), task_of() and Driver.run()."""
+    driver = Driver(sim, rig_of(sim.scene, sim.world), planner_of(sim.scene))
+    try:
+        driver.run(task_of(sim.scene, sim.world), until)
+    finally:
+        driver.close()
+    return driver
+
+
+def _tables(scene: gloam.Scene) -> dict[str, Any]:
+    import tomllib
+
+    return tomllib.loads(scene.to_toml())
+
+
+def _table(scene: gloam.Scene) -> dict[str, Any]:
+    table = _tables(scene).get("planner")
+    if table is None:
+        raise gloam.UsageError(f"scene '{scene.name}' has no [planner]", hint='add [planner] with a type, such as "route"')
+    return dict(table)
+
+
+def _robot(table: dict[str, Any], world: gloam.World) -> str:
+    return str(table.get("robot") or world.robots[0])
+
+
+def _resolved(scene: gloam.Scene, path: str) -> Path:
+    return scene.file.parent / path

@@ -1,0 +1,138 @@
+#!/usr/bin/env python3
+"""`gloam navigate`, `gloam map` and `gloam bench nav`. Help is printed without a built program."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+import tempfile
+from pathlib import Path
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """The command line. Exit codes: 0 ok, 1 failure, 2 usage, 130 interrupted."""
+    parser = argparse.ArgumentParser(prog="gloam", description="Visual navigation (docs/navigation.md).")
+    commands = parser.add_subparsers(dest="command", required=True)
+    _add_navigate(commands)
+    _add_map(commands)
+    _add_bench(commands)
+    given = parser.parse_args(arguments)
+    import gloam
+
+    try:
+        return int(given.action(given))
+    except gloam.Error as error:
+        print(f"gloam: error: {error}", file=sys.stderr)
+        return 2 if isinstance(error, gloam.UsageError) else 1
+    except KeyboardInterrupt:
+        print("gloam: interrupted", file=sys.stderr)
+        return 130
+
+
+def _add_navigate(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    command = commands.add_parser(
+        "navigate",
+        help="run a scene with its [planner]",
+        epilog="Example:\n  gloam navigate examples/planner.toml --log run.mcap",
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    command.add_argument("scene", help="scene with a [planner]")
+    command.add_argument("--duration", type=float, help="[s]; default: the scene's")
+    command.add_argument("--seed", type=int, help="default: the scene's")
+    command.add_argument("--log", help="file of a log to record (MCAP)")
+    command.add_argument("--overwrite", action="store_true", help="replace an existing log")
+    command.set_defaults(action=_navigate)
+
+
+def _navigate(given: argparse.Namespace) -> int:
+    import gloam
+    from gloam.navigation.scene import drive
+
+    with gloam.load(given.scene, seed=given.seed) as sim:
+        until = given.duration if given.duration is not None else sim.scene.duration
+        if given.log:
+            with sim.record(given.log, overwrite=given.overwrite):
+                driver = drive(sim, until)
+        else:
+            driver = drive(sim, until)
+        stats = driver.stats
+        robot = sim.robots[driver.rig.robot]
+        print(f"time {sim.time:.2f} s, position {robot.pose.p[0]:.2f} {robot.pose.p[1]:.2f} m, arrived {str(driver.has_arrived).lower()}")
+        print(f"{stats.plans} plans, {stats.late} late, {stats.invalid} invalid{': ' + stats.error if stats.error else ''}")
+    return 0
+
+
+def _add_map(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    command = commands.add_parser(
+        "map",
+        help="make a topological map from a log",
+        epilog="Example:\n  gloam map run.mcap --camera go/front --spacing distance=0.5 -o map",
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    command.add_argument("log", help="log of a demonstration (MCAP)")
+    command.add_argument("-o", "--out", required=True, help="folder of the map; must not exist")
+    command.add_argument("--robot", default="", help="default: the first one")
+    command.add_argument("--camera", default="", help="default: the first camera of the robot")
+    command.add_argument("--spacing", default="time=1", help="of nodes: time=SECONDS, distance=METRES or change=MEAN (of 255); default: %(default)s")
+    command.add_argument("--size", default="160x120", help="of images [px]; default: %(default)s")
+    command.set_defaults(action=_map)
+
+
+def _map(given: argparse.Namespace) -> int:
+    import gloam
+    from gloam.navigation import Spacing
+    from gloam.navigation.recorded import map_of_log
+
+    rule, _, value = given.spacing.partition("=")
+    width, _, height = given.size.partition("x")
+    if Path(given.out).exists():
+        raise gloam.UsageError(f"{given.out} already exists", hint="choose another folder")
+    try:
+        spacing = Spacing(rule, float(value))
+        size = (int(width), int(height))
+    except ValueError as error:
+        raise gloam.UsageError(str(error)) from None
+    with tempfile.TemporaryDirectory(prefix="gloam-map-") as work:
+        made = map_of_log(Path(given.log), Path(work), spacing, size, (given.robot, given.camera))
+    made.save(given.out)
+    print(f"{given.out}: {len(made)} nodes of {size[0]} x {size[1]} pixels")
+    return 0
+
+
+def _add_bench(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    command = commands.add_parser(
+        "bench",
+        prog="gloam bench nav",
+        help="the benchmark of visual navigation",
+        description="Planners x scenes x adversity levels (docs/navigation.md). A repeated call continues.",
+        epilog="Examples:\n  gloam bench nav --n 5 --planners route,lidar,gloam\n  gloam bench nav --scenes house --levels none,major --out nav",
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    option = command.add_argument
+    option("--planners", default="straight,replay,lidar,route,gloam", help="names, separated by commas; default: %(default)s")
+    option("--scenes", default="house,warehouse", help="also office and tunnel; default: %(default)s")
+    option("--levels", default="none,minor,major", help="default: %(default)s")
+    option("--n", type=int, default=100, help="episodes of each planner, scene and level; default: %(default)s")
+    option("--seed", type=int, default=1, help="default: %(default)s")
+    option("--tier", default="interactive", choices=("interactive", "path", "direct"), help="of images; default: %(default)s")
+    option("--out", default="results/navigation", help="folder of the results; default: %(default)s")
+    option("--workers", type=int, default=0, help="processes; default: one for two processors")
+    option("--no-log", action="store_true", help="do not record a log of each episode")
+    option("--no-report", action="store_true", help="run the episodes only")
+    command.set_defaults(action=_bench)
+
+
+def _bench(given: argparse.Namespace) -> int:
+    from gloam.navigation.benchmark.report import write_report
+    from gloam.navigation.benchmark.runner import Request, run
+
+    split = {name: tuple(filter(None, getattr(given, name).split(","))) for name in ("planners", "scenes", "levels")}
+    request = Request(**split, episodes=given.n, seed=given.seed, tier=given.tier, log=not given.no_log)
+    run(request, Path(given.out), given.workers, lambda text: print(text, file=sys.stderr, flush=True))
+    for file in [] if given.no_report else write_report(Path(given.out)):
+        print(file)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
