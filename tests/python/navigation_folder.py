@@ -82,7 +82,8 @@ def _draw(draw: random.Random, cell: tuple[str, str, str], number: int) -> dict[
     return episode(
         *cell, number, shortest=shortest, outcome="success" if success else failure, success=success,
         collisions=sum(objects.values()), collisions_by_object=objects, path_length=path if success else path * draw.random(),
-        time=path / 0.3 if success else draw.uniform(5, 120), final_distance=draw.uniform(0.1, 0.5) if success else draw.uniform(1, shortest),
+        time=path / 0.3 if success else draw.uniform(5, 120),
+        final_distance=draw.uniform(0.1, 0.5) if success else draw.uniform(1, shortest),
         visibility_mean=sight, visibility_min=sight * 0.6, plans=plans, late=draw.randrange(3), invalid=int(draw.random() < 0.05),
         wall_seconds=draw.uniform(20, 60), cpu_seconds=draw.uniform(40, 110), log="run.mcap", video="front.mp4",
         message="the planner's process ended with status 1" if failure == "error" and not success else "",

@@ -172,10 +172,13 @@ def holm(values):
     return [min(1.0, max((len(order) - j) * order[j] for j in range(len(order)) if order[j] <= value)) for value in values]
 
 
-def differences(folder):
-    """Sentences about figures of the package's tables that differ from the recomputed ones; empty if all agree."""
-    request, episodes, figures = cells(folder)
-    wrong = []
+def differences(folder, computed=None):
+    """Sentences about figures of the package's tables that differ from the recomputed ones; empty if all agree.
+
+    computed: the result of cells() of the same episodes, if it is known already.
+    """
+    request, episodes, figures = computed or cells(folder)
+    figures, wrong = dict(figures), []
     with open(f"{folder}/cells.csv", newline="", encoding="utf-8") as file:
         for row in csv.DictReader(file):
             name = row["planner"], row["scene"], row["level"]

@@ -7,6 +7,7 @@ import re
 import sys
 from html.parser import HTMLParser
 from pathlib import Path
+from typing import Any
 
 import gloam
 import navigation_recompute
@@ -28,6 +29,12 @@ def report(tmp_path_factory: pytest.TempPathFactory) -> Path:
     names = [path.name for path in write_report(folder)]
     assert names == ["results.csv", "cells.csv", "paired_tests.csv", "results.parquet", "table.tex", "report.html"]
     return folder
+
+
+@pytest.fixture(scope="module")
+def computed(report: Path) -> Any:
+    """Request, episodes and figures as the independent script has them."""
+    return navigation_recompute.cells(report)
 
 
 class Page(HTMLParser):
@@ -57,12 +64,12 @@ class Page(HTMLParser):
             self.figures[self._cell] = self.figures.get(self._cell, "") + data + " "
 
 
-def test_an_independent_computation_agrees(report: Path) -> None:
-    assert navigation_recompute.differences(report) == []
+def test_an_independent_computation_agrees(report: Path, computed: Any) -> None:
+    assert navigation_recompute.differences(report, computed) == []
 
 
 @pytest.mark.parametrize("column", ["success", "sc_low", "spl", "time", "late", "cpu", "finished"])
-def test_a_wrong_figure_is_noticed(report: Path, tmp_path: Path, column: str) -> None:
+def test_a_wrong_figure_is_noticed(report: Path, computed: Any, tmp_path: Path, column: str) -> None:
     for name in ("request.json", "episodes", "paired_tests.csv"):
         (tmp_path / name).symlink_to(report / name)
     with open(report / "cells.csv", newline="") as file:
@@ -72,12 +79,23 @@ def test_a_wrong_figure_is_noticed(report: Path, tmp_path: Path, column: str) ->
         writer = csv.DictWriter(file, list(rows[0]))
         writer.writeheader()
         writer.writerows(rows)
-    assert len(navigation_recompute.differences(tmp_path)) == 1
+    assert len(navigation_recompute.differences(tmp_path, computed)) == 1
 
 
-def test_the_page_prints_the_recomputed_figures(report: Path) -> None:
+def test_a_wrong_p_value_is_noticed(report: Path, computed: Any, tmp_path: Path) -> None:
+    (tmp_path / "cells.csv").symlink_to(report / "cells.csv")
+    text = (report / "paired_tests.csv").read_text()
+    line = next(line for line in text.splitlines() if line.startswith("levels,house,route,none,major"))
+    values = line.split(",")
+    values[9] = str(float(values[9]) + 0.02)
+    (tmp_path / "paired_tests.csv").write_text(text.replace(line, ",".join(values)))
+    assert text.splitlines()[0].split(",")[9] == "success_p"
+    assert "success_p" in "".join(navigation_recompute.differences(tmp_path, computed))
+
+
+def test_the_page_prints_the_recomputed_figures(report: Path, computed: Any) -> None:
     page = Page((report / "report.html").read_text())
-    _, episodes, figures = navigation_recompute.cells(report)
+    _, episodes, figures = computed
     seen = 0
     for (cell, metric), text in page.figures.items():
         figure = figures[tuple(cell.split("/"))][metric]
@@ -101,9 +119,12 @@ def test_the_page_requests_nothing_and_its_links_exist(report: Path) -> None:
     assert page.tags.isdisjoint({"script", "iframe", "link", "object"})
     links = [address for address in page.addresses if address.startswith("episodes/")]
     assert len(links) == 18 * 4 and all((report / link).is_file() for link in links)
-    others = {address.split(":")[0] for address in page.addresses if not address.startswith(("episodes/", "#"))}
-    assert others == {"data", "https"}
+    others = {address.split(":")[0] for address in page.addresses if not address.startswith(("episodes/", "#", "https:"))}
+    assert others == {"data", "cells.csv", "paired_tests.csv", "results.csv", "results.parquet", "table.tex"}
     assert [address for address in page.addresses if address.startswith("https")] == ["https://arxiv.org/abs/2504.14135"]
+    # Links wait for a click; only these would be requested with the page.
+    text = (report / "report.html").read_text()
+    assert not re.search(r"url\(|@import|srcset|src=\"(?!data:)", text)
 
 
 def test_the_same_folder_gives_the_same_files(report: Path) -> None:
@@ -124,7 +145,8 @@ def test_parquet_has_every_episode(report: Path) -> None:
 def test_hostile_names_stay_text(tmp_path: Path) -> None:
     for module in ("matplotlib", "jinja2", "pyarrow"):
         pytest.importorskip(module)
-    write_request(tmp_path, planners=[HOSTILE, "_b"], scenes=[HOSTILE], levels=["_none", "$"], episodes=2, machine=HOSTILE, version=HOSTILE)
+    names = {"planners": [HOSTILE, "_b"], "scenes": [HOSTILE], "levels": ["_none", "$"]}
+    write_request(tmp_path, **names, episodes=2, machine=HOSTILE, version=HOSTILE)
     for planner in (HOSTILE, "_b"):
         values = episode(planner, HOSTILE, "_none", 0, collisions=2, collisions_by_object={HOSTILE: 1, "$\\frac{": 1})
         write_episode(tmp_path, values, video=HOSTILE, message=HOSTILE, outcome="error", success=False)
@@ -143,7 +165,9 @@ def test_a_folder_without_an_episode_has_a_page(tmp_path: Path) -> None:
     assert "1 episode is pending" in text and "a, b, c: all 1" in text and "No robot collided" in text
 
 
-@pytest.mark.parametrize(("module", "package"), [("matplotlib", "matplotlib==3.11.2"), ("jinja2", "Jinja2==3.1.6"), ("pyarrow", "pyarrow==26.0.1")])
+@pytest.mark.parametrize(("module", "package"), [
+    ("matplotlib", "matplotlib==3.11.2"), ("jinja2", "Jinja2==3.1.6"), ("pyarrow", "pyarrow==26.0.1"),
+])  # fmt: skip
 def test_a_missing_package_is_named_before_anything_is_written(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, module: str, package: str
 ) -> None:

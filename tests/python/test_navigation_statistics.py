@@ -151,6 +151,26 @@ def test_pairs_use_the_index_and_finished_episodes(tmp_path: Path) -> None:
     assert [key.episode for key in results.pending] == [0, 2, 4, 6]
 
 
+def test_words_give_the_direction(tmp_path: Path) -> None:
+    write_request(tmp_path, planners=["route"], scenes=["house"], levels=["none", "major"], episodes=12)
+    for number in range(12):
+        write_episode(tmp_path, episode(*NAME, number))
+        write_episode(tmp_path, episode("route", "house", "major", number, **FAIL))
+    results = load_results(tmp_path)
+    summary = summarize(results)
+    (test,) = summary.tests
+    assert test.success_p == 2 / 2**12 and test.success_holm == 4 / 2**12
+    assert words.verdict(test) == "success and SC lower with “major”"
+    assert words.success_words(test) == "Successes in 12 pairs: 12 only with “none”, 0 only with “major”, 0 with both."
+    assert words.findings(results, summary) == [
+        "house, highest mean SC: none: route with 1.00; major: no success.",
+        "1 of 1 comparisons between levels of one planner show a clear difference (Holm-adjusted p < 0.05).",
+    ]
+    assert words.power_note([test]) == ""  # 2 tests, p down to 2 / 2^12
+    assert words.power_note([test] * 60).endswith("At least 13 episodes per cell are needed.")
+    assert words.number(-0.001) == "0.00" and words.number(-0.2, 1) == "−0.2" and words.percent(0.0004) == "< 0.1 %"
+
+
 def test_different_tasks_of_a_pair_are_reported(tmp_path: Path) -> None:
     write_request(tmp_path, planners=["route"], scenes=["house"], levels=["none", "minor"], episodes=1)
     write_episode(tmp_path, episode(*NAME, 0))
@@ -196,7 +216,8 @@ def test_wrong_files_and_requests(tmp_path: Path) -> None:
         (tmp_path / "request.json").write_bytes(text if isinstance(text, bytes) else text.encode())
         with pytest.raises(gloam.InputError, match="request.json"):
             load_results(tmp_path)
-    for change in ({"planners": []}, {"planners": ["a/b"]}, {"scenes": [".."]}, {"levels": ["x", "x"]}, {"episodes": 0}, {"scenes": "house"}):
+    wrong = {"planners": ([], ["a/b"], [1]), "scenes": ([".."], "house", ["a\0"]), "levels": (["x", "x"],), "episodes": (0, True)}
+    for change in [{name: value} for name, values in wrong.items() for value in values]:
         write_request(tmp_path, **change)
         with pytest.raises(gloam.InputError, match=f"'{next(iter(change))}'"):
             load_results(tmp_path)

@@ -66,8 +66,9 @@ def sc_by_level(request: Request, summary: Summary) -> str:
     columns = min(len(request.planners), _MOST_COLUMNS)
     strips = -(-len(request.planners) // columns)  # rows of panels per scene
     rows = strips * len(request.scenes)
-    with _Chart(1.2 + 2.5 * columns, 0.3 + 2.3 * rows, "sc") as chart:
+    with _Chart(0.6 + min(3.4, max(2.6, 10.0 / columns)) * columns, 0.3 + 2.6 * rows, "sc") as chart:
         axes = chart.figure.subplots(rows, columns, sharex=True, sharey=True, squeeze=False)
+        chart.figure.get_layout_engine().set(h_pad=0.1, w_pad=0.08)
         for axis in axes.flat:
             axis.set_visible(False)
         for i, scene in enumerate(request.scenes):
@@ -98,7 +99,7 @@ def _sc_panel(axis: Any, request: Request, summary: Summary, name: tuple[str, st
                       solid_capstyle="butt")  # fmt: skip
         if cell.sc.value is None:
             axis.text(place, 0.5, "no episode", color=_SOFT, ha="center", va="center", rotation=90, fontsize=8)
-    axis.set_title(f"{_short(planner)} · {_short(scene)}", color=_INK)
+    axis.set_title(f"{_short(planner, 30)}\n{_short(scene, 30)}", color=_INK)
     axis.set_xticks(places, [_short(level, 12) for level in request.levels])
     axis.set_xlim(-0.4, len(request.levels) - 0.6)
     axis.set_ylim(-0.03, 1.03)

@@ -17,6 +17,7 @@ from gloam.errors import Error, IoError
 from . import charts, paper, tables, words
 from .optional import require
 from .results import Episode, Results, load_results
+from .statistics import Estimate, wilson
 from .summary import CellSummary, Summary, summarize
 
 PAGE = "report.html"
@@ -25,7 +26,7 @@ PAGE = "report.html"
 def write_report(folder: str | Path) -> list[Path]:
     """Writes report.html, results.csv, cells.csv, paired_tests.csv, results.parquet and table.tex into the folder.
 
-    Returns their paths. A file is replaced only when its new content is complete. Errors: those of `load_results`;
+    Returns their paths. A file is replaced only when its new content is complete. Errors: as `load_results`;
     gloam.UnsupportedError if matplotlib, jinja2 or pyarrow is missing (nothing is written then); gloam.IoError if the
     folder cannot be written.
     """
@@ -72,6 +73,7 @@ def render_page(results: Results, summary: Summary) -> str:
         "duration": words.duration,
         "p": words.p_value,
     }
+    environment.tests["clear_test"] = words.is_clear
     template = environment.from_string(Path(__file__).with_name("report.html").read_text(encoding="utf-8"))
     text: str = template.render(
         request=results.request,
@@ -120,15 +122,16 @@ def _comparison(results: Results, summary: Summary) -> list[tuple[str, str, list
     return [row for row in rows if row[2]]
 
 
-def _paper_success(row: paper.PaperRow) -> Any:
-    from .statistics import wilson
-
+def _paper_success(row: paper.PaperRow) -> Estimate:
     return wilson(row.successes, paper.RUNS)
 
 
 def main() -> int:
     """Command line. Exit status: 0 = written, 1 = error on stderr."""
-    parser = argparse.ArgumentParser(prog="python -m gloam.navigation.benchmark.report", description="Writes the report of a navigation benchmark into its folder.")
+    parser = argparse.ArgumentParser(
+        prog="python -m gloam.navigation.benchmark.report",
+        description="Writes the report of a navigation benchmark into its folder.",
+    )
     parser.add_argument("folder", metavar="FOLDER", type=Path, help="output folder of gloam bench nav")
     try:
         for path in write_report(parser.parse_args().folder):

@@ -88,7 +88,7 @@ def mcnemar(first_only: int, second_only: int) -> float:
     if least < 0:
         raise ValueError(f"{first_only} and {second_only} pairs")
     tail = sum(math.comb(count, k) for k in range(least + 1))
-    return min(1.0, 2 * tail / 2**count)
+    return min(1.0, 2 * tail / (1 << count))
 
 
 def sign_flip(differences: Sequence[float], random: np.random.Generator, flips: int = FLIPS) -> float:

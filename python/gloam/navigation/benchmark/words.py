@@ -25,7 +25,7 @@ def interval(estimate: Estimate, digits: int = 2) -> str:
         return ""
     if estimate.constant:
         return "all equal"
-    return f"[{number(estimate.low, digits)}, {number(estimate.high, digits)}]"
+    return f"[{number(estimate.low, digits)},\u00a0{number(estimate.high, digits)}]"  # no line break inside
 
 
 def percent(share: float | None) -> str:
@@ -59,7 +59,7 @@ def success_words(test: PairedTest) -> str:
     if test.first_only == test.second_only == 0:
         return f"Both have the same outcome in all {_pairs(test)}: {test.both} successes."
     return (
-        f"Of {_pairs(test)}, {test.first_only} succeeded only with {first}, {test.second_only} only with {second}, "
+        f"Successes in {_pairs(test)}: {test.first_only} only with {first}, {test.second_only} only with {second}, "
         f"{test.both} with both."
     )
 
@@ -70,25 +70,45 @@ def sc_words(test: PairedTest) -> str:
     if value is None:
         return ""
     brackets = interval(test.sc)
-    change = "SC is equal on average" if abs(value) < 0.005 else (
-        f"SC is {number(abs(value))} {'higher' if value > 0 else 'lower'} with “{test.second}”"
-    )  # fmt: skip
-    return f"{change} (difference {number(value)}{' ' + brackets if brackets else ''})."
+    numbers = f"{number(value)}\u00a0{brackets}".strip()
+    if abs(value) < 0.005:
+        return f"The mean SC is equal: difference {numbers}."
+    return f"SC is {'higher' if value > 0 else 'lower'} with “{test.second}”: {numbers}."
 
 
 def verdict(test: PairedTest) -> str:
-    """ "clear", "no clear difference", or the reason for which the test cannot decide."""
-    if test.success_p is None:
+    """The direction of clear differences, "no clear difference", or the reason for which the test cannot decide."""
+    if test.success_p is None or test.sc.value is None:
         return "no pairs"
     if test.least_p > ALPHA:
         return f"too few pairs: p cannot be below {number(test.least_p, 3)}"
-    clear = [name for name, p in (("success", test.success_holm), ("SC", test.sc_holm)) if p is not None and p < ALPHA]
-    return f"clear difference in {' and '.join(clear)}" if clear else "no clear difference"
+    differences = (
+        ("success", test.success_holm, test.second_only - test.first_only),
+        ("SC", test.sc_holm, test.sc.value),
+    )
+    clear = [(name, change > 0) for name, p, change in differences if p is not None and p < ALPHA]
+    ways = [f"{' and '.join(n for n, up in clear if up == way)} {'higher' if way else 'lower'}"
+            for way in (True, False) if any(up == way for _, up in clear)]  # fmt: skip
+    return f"{', '.join(ways)} with “{test.second}”" if ways else "no clear difference"
 
 
 def is_clear(test: PairedTest) -> bool:
     """Whether an adjusted p-value is below 0.05."""
     return any(p is not None and p < ALPHA for p in (test.success_holm, test.sc_holm))
+
+
+def power_note(tests: list[PairedTest]) -> str:
+    """A sentence if no test of a family can have an adjusted p below 0.05, because the smallest p-value of its pairs times
+    the number of tests is larger; "" otherwise."""
+    known = [test for test in tests if test.success_p is not None]
+    count = 2 * len(known)
+    if not known or count * min(test.least_p for test in known) < ALPHA:
+        return ""
+    needed = next(n for n in range(1, 100) if count * 2.0 ** (1 - n) < ALPHA)
+    return (
+        f"No result can be clear here: with {max(test.pairs for test in known)} pairs and {count} tests, no adjusted p can "
+        f"be below 0.05. At least {needed} episodes per cell are needed."
+    )
 
 
 def findings(results: Results, summary: Summary) -> list[str]:
@@ -114,8 +134,10 @@ def _best(level: str, cells: list[CellSummary]) -> str:
     top = max(c.sc.value or 0.0 for c in cells)
     if top == 0:
         return f"{level}: no success"
-    names = [c.planner for c in cells if c.sc.value == top]
-    return f"{level}: {' and '.join(names)} with {number(top)}"
+    best = [c for c in cells if c.sc.value == top]
+    names = " and ".join(c.planner for c in best)
+    brackets = "" if best[0].sc.constant else interval(best[0].sc)
+    return f"{level}: {names} with {number(top)} {brackets}".rstrip()
 
 
 def _pairs(test: PairedTest) -> str:
