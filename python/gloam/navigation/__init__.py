@@ -17,19 +17,25 @@ from .planner import (
     planner_names,
     register_planner,
 )
+from .topological_map import MapSource, Node, Spacing, TopologicalMap, build_map
 
 __all__ = [
     "Answer",
     "Arrived",
     "Driver",
+    "MapSource",
+    "Node",
     "Observation",
     "Planner",
     "PlannerStats",
     "Rig",
+    "Spacing",
     "Task",
+    "TopologicalMap",
     "Velocity",
     "WaypointFollower",
     "Waypoints",
+    "build_map",
     "make_planner",
     "planner_names",
     "planners",
