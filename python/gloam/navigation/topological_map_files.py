@@ -97,7 +97,7 @@ def _node(row: Any, index: int, file: Path, size: tuple[int, int]) -> Node:
             raise ValueError(f"a number of node {index} must be finite and within 1e9, got {value!r}")
     try:
         image = decode_png(_read(file, _MOST_PNG), size)
-    except (ValueError, zlib.error, struct.error) as error:
+    except (ValueError, zlib.error) as error:
         if isinstance(error, gloam.Error):
             raise
         raise gloam.InputError(str(error), str(file)) from error
@@ -129,11 +129,13 @@ def _read(file: Path, most: int) -> bytes:
 
 def decode_png(data: bytes, size: tuple[int, int]) -> Image:
     """(H, W, 3) uint8 from a PNG file of 8-bit RGB without interlacing (W3C, PNG third edition). size: the (width,
-    height) that it must have. Errors: ValueError, zlib.error, struct.error for other or damaged files."""
+    height) that it must have. Errors: ValueError or zlib.error for other or damaged files."""
     if data[:8] != _SIGNATURE:
         raise ValueError("this is not a PNG file")
     position, packed, header = 8, [], b""
     while True:
+        if len(data) - position < 12:
+            raise ValueError("the PNG file is damaged")
         length, kind = struct.unpack(">I4s", data[position : position + 8])
         body = data[position + 8 : position + 8 + length]
         if len(body) != length or data[position + 8 + length : position + 12 + length] != _checksum(kind + body):
@@ -149,7 +151,7 @@ def decode_png(data: bytes, size: tuple[int, int]) -> Image:
         raise ValueError(f"the image must be 8-bit RGB of {size[0]} x {size[1]} pixels without interlacing")
     stride = size[0] * 3 + 1
     decoder = zlib.decompressobj()
-    raw = decoder.decompress(b"".join(packed), stride * size[1] + 1)  # bounded, whatever the file claims
+    raw = decoder.decompress(b"".join(packed), stride * size[1] + 1)  # bounded: a small file can decompress to gigabytes
     if len(raw) != stride * size[1]:
         raise ValueError("the PNG file has too few or too many pixels")
     return _unfilter(np.frombuffer(raw, np.uint8).reshape(size[1], stride)).reshape(size[1], size[0], 3)
