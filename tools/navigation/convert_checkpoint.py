@@ -42,8 +42,10 @@ def read_state(path: Path) -> dict[str, Tensor]:
         if "GLOBAL" in str(error) or "weights_only" in str(error).lower():
             raise CheckpointError(f"{path}: {REMEDY}") from error
         raise CheckpointError(f"{path}: this is not a checkpoint of PyTorch") from error
-    except (OSError, RuntimeError, EOFError, ValueError) as error:
-        raise CheckpointError(f"{path}: cannot read the checkpoint: {error}") from error
+    except OSError as error:
+        raise CheckpointError(f"{path}: cannot read the checkpoint: {error.strerror}") from error
+    except Exception as error:  # damaged files end in exceptions of many kinds
+        raise CheckpointError(f"{path}: this is not a checkpoint of PyTorch") from error
     if isinstance(contents, dict) and isinstance(contents.get("model"), dict):
         contents = contents["model"]
     if not isinstance(contents, dict) or not contents:

@@ -1,0 +1,34 @@
+"""Converted networks against PyTorch (navigation_torch.py)."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import sys
+from pathlib import Path
+from typing import Any
+
+import pytest
+import torch_cpu
+
+ROOT = Path(__file__).resolve().parents[2]
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(sys.version_info[:2] != (3, 11), reason="PyTorch's wheel of 540 MB is pinned for Python 3.11 alone")
+def test_converted_networks_equal_pytorch(run_python: Any) -> None:
+    pytest.importorskip("onnx")
+    pytest.importorskip("openvino")
+    if shutil.which("gcc") is None or shutil.which("readelf") is None:
+        pytest.skip("stand-ins for CUDA's libraries are made with gcc")
+    try:
+        packages, libraries = torch_cpu.torch_cpu()
+    except RuntimeError as error:
+        pytest.skip(f"no PyTorch: {error}")
+    folders = [ROOT / "python", packages, ROOT / "tools" / "navigation", ROOT / "tests" / "python", ROOT / "tests"]
+    path = os.pathsep.join(str(folder) for folder in folders)
+    code = (ROOT / "tests" / "python" / "navigation_torch.py").read_text(encoding="utf-8")
+    told = run_python(code, PYTHONPATH=path, LD_LIBRARY_PATH=libraries, OMP_NUM_THREADS="1", timeout=600)
+    if told.stdout.startswith("skip: "):
+        pytest.skip(told.stdout.strip())
+    assert "equal to PyTorch" in told.stdout
