@@ -2,12 +2,8 @@
 
 from __future__ import annotations
 
-import builtins
 import importlib.util
 import math
-import os
-import shutil
-import sys
 from pathlib import Path
 from typing import Any
 
@@ -15,7 +11,6 @@ import gloam
 import navigation_fixtures as fixtures
 import numpy as np
 import pytest
-import torch_cpu
 from gloam.navigation import Arrived, MapSource, Node, Observation, Task, TopologicalMap, Waypoints, make_planner
 from gloam.navigation.networks.onnx_network import OnnxNetwork, Port
 from gloam.navigation.networks.preprocessing import ContextStack, crop_to_aspect, prepare, resize

@@ -172,7 +172,7 @@ def _is_due(spacing: Spacing, node: Node, frame: Node) -> bool:
 
 def _grey(image: Image) -> NDArray[np.float64]:
     """(24, 32) means over cells, with the luma weights of ITU-R BT.601."""
-    luma = check_image(image).astype(np.float64) @ np.array([0.299, 0.587, 0.114])
+    luma: NDArray[np.float64] = check_image(image).astype(np.float64) @ np.array([0.299, 0.587, 0.114])
     for axis, count in ((0, _GREY_SIZE[1]), (1, _GREY_SIZE[0])):
         size = luma.shape[axis]
         starts = np.arange(count) * size // count

@@ -144,8 +144,9 @@ def _load_openvino(path: Path) -> tuple[list[Port], list[Port], _Run]:
 
 
 def _load_onnxruntime(path: Path) -> tuple[list[Port], list[Port], _Run]:
-    import onnxruntime
+    from importlib import import_module
 
+    onnxruntime: Any = import_module("onnxruntime")  # it has no type hints
     options = onnxruntime.SessionOptions()
     options.intra_op_num_threads = 1
     options.inter_op_num_threads = 1

@@ -142,4 +142,5 @@ def _resize_rows(image: Image, height: int) -> Image:
     # Products below 2^53: matrix products of doubles are exact here in any order, and faster than int64.
     flat = image.reshape(image.shape[0], -1).astype(np.float64)
     total = (table.astype(np.float64) @ flat).astype(np.int64) + (1 << (_BITS - 1))
-    return np.clip(total >> _BITS, 0, 255).astype(np.uint8).reshape(height, *image.shape[1:])
+    resized: Image = np.clip(total >> _BITS, 0, 255).astype(np.uint8).reshape(height, *image.shape[1:])
+    return resized
