@@ -99,8 +99,8 @@ class Planner(ABC):
     its answer [s]; needs: observations other than pose and velocity; image_size: (width, height) [px].
     """
 
-    rate: ClassVar[float] | float = 4.0
-    latency: ClassVar[float] | float = 0.1
+    rate: float = 4.0
+    latency: float = 0.1
     needs: ClassVar[frozenset[Need]] = frozenset()
     image_size: tuple[int, int] = (85, 64)
 
@@ -139,6 +139,7 @@ def make_planner(name: str, **options: Any) -> Planner:
 
     if name not in _planners:
         near = difflib.get_close_matches(name, _planners, 1)
-        raise gloam.NotFoundError(f"there is no planner '{name}'" + (f" (did you mean '{near[0]}'?)" if near else "") + f"; there are: {', '.join(planner_names())}")
+        hint = f"did you mean '{near[0]}'?" if near else ""
+        raise gloam.NotFoundError(f"there is no planner '{name}'; there are: {', '.join(planner_names())}", hint=hint)
     planner: Planner = _planners[name](**options)
     return planner

@@ -34,7 +34,11 @@ Pose = tuple[float, float, float]
 MOST_NODES = 10_000
 MOST_SIDE = 4096  # [px]
 _GREY_SIZE = (32, 24)  # (width, height) [px] of the images that the rule "change" compares
-_NOT_SEEN = ("scene", "sim", "robot", "camera", "goal", "metric", "record", "planner")  # tables that alter no building
+# Tables that alter no building. A map that was recorded in clear air serves in smoke.
+_NOT_SEEN = (
+    *("scene", "sim", "robot", "camera", "lidar", "sensor", "goal", "metric", "record", "planner"),
+    *("adversity", "weather"),
+)
 
 
 @dataclass(frozen=True)
