@@ -1,0 +1,75 @@
+"""Losses of the training, and measures of a validation."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import torch
+from torch import Tensor
+from torch.nn import functional
+
+from .dataset import Batch, Data, Sampling, normalised
+from .labels import MAX_STEPS, SPACING
+
+Network = Callable[[Tensor, Tensor], tuple[Tensor, Tensor]]
+
+
+@dataclass(frozen=True)
+class Weights:
+    """alpha: share of the distance in the loss, as in GNM; heading: of the cosine loss, relative to the waypoints;
+    scale: of waypoints in the squared error [steps]."""
+
+    alpha: float = 0.5
+    heading: float = 1.0
+    scale: float = 2.5
+
+
+def loss(dist: Tensor, action: Tensor, batch: Batch, weights: Weights) -> Tensor:
+    """alpha MSE(dist / 20) + (1 - alpha) (MSE of waypoints + 1 - cos of headings), where goals are on the path."""
+    distance = functional.mse_loss(dist[:, 0] / MAX_STEPS, batch.dist / MAX_STEPS)
+    valid = batch.positive.float()
+    place = ((action[:, :, :2] - batch.action[:, :, :2]) / weights.scale).square().mean((1, 2))
+    heading = 1 - (action[:, :, 2:] * batch.action[:, :, 2:]).sum(2).mean(1)
+    total = valid.sum().clamp(min=1)
+    motion = ((place + weights.heading * heading) * valid).sum() / total
+    return weights.alpha * distance + (1 - weights.alpha) * motion
+
+
+@torch.no_grad()
+def validate(network: Network, data: Data, batches: int, size: int, seed: int = 0) -> dict[str, dict[str, float]]:
+    """Measures on random samples without augmentation, by condition of the observation.
+
+    dist_mae: of goals on the path [steps]; waypoint_m: mean distance of the waypoints from their labels [m];
+    direction_cos: of the direction of the third waypoint; heading_cos; negative_dist: mean answer to goals elsewhere
+    [steps]; goal_gain_m: by how much other goals of the batch increase waypoint_m, 0 if goals are ignored; samples.
+    """
+    generator = torch.Generator(data.device).manual_seed(seed)
+    rows: list[Tensor] = []
+    for _ in range(batches):
+        batch = data.sample(size, generator, Sampling())
+        observation, goal = normalised(batch.observation.float() / 255), normalised(batch.goal[:, None].float() / 255)
+        dist, action = network(observation, goal)
+        _, astray = network(observation, goal.roll(1, 0))
+        gap = _gap(action, batch.action)
+        label = batch.action[:, 2, :2]
+        direction = functional.cosine_similarity(action[:, 2, :2], label, dim=1)
+        heading = (action[:, :, 2:] * batch.action[:, :, 2:]).sum(2).mean(1)
+        error = (dist[:, 0] - batch.dist).abs()
+        columns = [batch.condition, batch.positive, error, gap, direction, heading, dist[:, 0]]
+        rows.append(torch.stack([column.float() for column in (*columns, _gap(astray, batch.action) - gap)], 1).cpu())
+    table = torch.cat(rows)
+    answer = {name: _means(table[table[:, 0] == number]) for number, name in enumerate(data.conditions)}
+    return {**answer, "all": _means(table)} if len(data.conditions) > 1 else answer
+
+
+def _gap(action: Tensor, label: Tensor) -> Tensor:
+    return torch.linalg.vector_norm(action[:, :, :2] - label[:, :, :2], dim=2).mean(1) * SPACING
+
+
+def _means(table: Tensor) -> dict[str, float]:
+    here, away = table[table[:, 1] > 0], table[table[:, 1] == 0]
+    names = ["dist_mae", "waypoint_m", "direction_cos", "heading_cos"]
+    means = {name: float(here[:, 2 + number].mean()) for number, name in enumerate(names)}
+    gain = {"negative_dist": float(away[:, 6].mean()), "goal_gain_m": float(here[:, 7].mean())}
+    return {**{name: round(value, 4) for name, value in {**means, **gain}.items()}, "samples": float(len(table))}

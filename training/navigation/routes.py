@@ -1,0 +1,152 @@
+"""Writes the scenes and the table of views of the training: `./gloam python -m training.navigation.routes --out DIR`.
+
+DIR/scenes/PLACE_CONDITION.toml has one camera per view; DIR/routes.npz has the arrays of `Views`,
+DIR/places.json the names of the places.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import time
+from collections.abc import Sequence
+from dataclasses import dataclass, fields
+from pathlib import Path as File
+
+import numpy as np
+from numpy.typing import NDArray
+
+import gloam
+from gloam.envs.free_space import FreeSpace
+
+from .labels import Path, waypoints
+from .paths import VIEW_SPACING, Deviation, deviating_drive, nominal_drive, plan
+from .scenes import CONDITIONS, Place, camera_poses, cameras_toml, place_toml, places
+
+Array = NDArray[np.float64]
+RADIUS = 0.32  # of the free space around the trunk's centre [m]; the camera is 0.31 m ahead of it
+LENGTHS = (4.0, 12.0)  # of paths [m]
+
+
+@dataclass(frozen=True)
+class Views:
+    """Rows of a table of n views. place: number; route: number, unique over all places; drive: 0 on the path, 1 straying;
+    along: progress on the path [m]; pose: (n, 3) x, y, yaw [m, rad]; action: (n, 5, 4) label (labels.waypoints)."""
+
+    place: NDArray[np.int32]
+    route: NDArray[np.int32]
+    drive: NDArray[np.int8]
+    along: NDArray[np.float32]
+    pose: NDArray[np.float32]
+    action: NDArray[np.float32]
+
+    def __len__(self) -> int:
+        return len(self.place)
+
+
+def joined(parts: Sequence[Views]) -> Views:
+    """All rows, in order."""
+    return Views(*(np.concatenate([getattr(part, field.name) for part in parts]) for field in fields(Views)))
+
+
+def route_views(path: Path, space: FreeSpace, rng: np.random.Generator, place: int, route: int) -> Views:
+    """Views of two drives of a path: on it, and straying from it."""
+    parts = []
+    for drive in (0, 1):
+        poses, along = nominal_drive(path) if drive == 0 else deviating_drive(path, space, rng, Deviation())
+        action = np.array([waypoints(path, pose, at) for pose, at in zip(poses, along, strict=True)])
+        count = len(poses)
+        parts.append(
+            Views(
+                np.full(count, place, np.int32),
+                np.full(count, route, np.int32),
+                np.full(count, drive, np.int8),
+                along.astype(np.float32),
+                poses.astype(np.float32),
+                action.astype(np.float32),
+            )
+        )
+    return joined(parts)
+
+
+def place_views(space: FreeSpace, views: int, place: int, first_route: int, seed: int) -> Views:
+    """Views of as many random routes as give at least `views`; UsageError if no path of LENGTHS is found."""
+    rng = np.random.default_rng((seed, place))
+    parts: list[Views] = []
+    for _ in range(50):
+        goal = space.sample(rng)
+        field = space.distances(goal)
+        try:
+            start = space.sample(rng, field, LENGTHS)
+        except gloam.UsageError:
+            continue
+        path = plan(space, start, goal)
+        if path is None or path.length < 0.8 * LENGTHS[0]:
+            continue
+        parts.append(route_views(path, space, rng, place, first_route + len(parts)))
+        if sum(map(len, parts)) >= views:
+            break
+    if not parts:
+        raise gloam.UsageError(f"there is no path of {LENGTHS[0]} to {LENGTHS[1]} m")
+    return joined(parts)
+
+
+def shared_space(place: Place, folder: File) -> FreeSpace:
+    """Free space of a place that is free in every condition. Errors: of gloam."""
+    spaces = []
+    for condition in CONDITIONS:
+        world = gloam.Scene.parse(place_toml(place, condition), folder).compile()
+        spaces.append(FreeSpace.of(world, (), RADIUS))
+    first = spaces[0]
+    if any(space.blocked.shape != first.blocked.shape for space in spaces):
+        raise gloam.UsageError("the floors differ between the conditions")
+    blocked = np.logical_or.reduce([space.blocked for space in spaces])
+    return FreeSpace((float(first.origin[0]), float(first.origin[1])), first.cell, blocked)
+
+
+def write_place(place: Place, views: Views, folder: File, seed: int) -> None:
+    """Writes the scenes of a place; all conditions have the same cameras."""
+    rng = np.random.default_rng((seed, place.seed, len(views)))
+    cameras = cameras_toml(*camera_poses(views.pose.astype(np.float64), rng))
+    for condition in CONDITIONS:
+        (folder / f"{place.name}_{condition}.toml").write_text(place_toml(place, condition) + cameras)
+
+
+def main(arguments: Sequence[str] | None = None) -> None:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--out", type=File, required=True, help="folder for the scenes and routes.npz")
+    parser.add_argument("--houses", type=int, default=20)
+    parser.add_argument("--warehouses", type=int, default=10)
+    parser.add_argument("--views", type=int, default=250, help="per place, at least")
+    parser.add_argument("--seed", type=int, default=1)
+    options = parser.parse_args(arguments)
+    scenes = options.out / "scenes"
+    scenes.mkdir(parents=True, exist_ok=True)
+    parts: list[Views] = []
+    names: list[str] = []
+    for place in places(options.houses, options.warehouses):
+        begin = time.monotonic()
+        try:
+            first = int(parts[-1].route.max()) + 1 if parts else 0
+            space = shared_space(place, scenes)
+            views = place_views(space, options.views, len(parts), first, options.seed)
+        except gloam.Error as error:
+            print(f"{place.name}: skipped: {error}", flush=True)
+            continue
+        write_place(place, views, scenes, options.seed)
+        parts.append(views)
+        names.append(place.name)
+        routes = len(np.unique(views.route))
+        print(f"{place.name}: {len(views)} views, {routes} routes, {time.monotonic() - begin:.1f} s", flush=True)
+        save(joined(parts), names, options.out / "routes.npz")
+        (options.out / "places.json").write_text(json.dumps(names))
+
+
+def save(views: Views, names: Sequence[str], file: File) -> None:
+    """Writes the table, with the places' names and the spacing of the views."""
+    table = {field.name: getattr(views, field.name) for field in fields(Views)}
+    np.savez_compressed(file, **table, names=np.array(names), view_spacing=np.float32(VIEW_SPACING))
+
+
+if __name__ == "__main__":
+    main()
