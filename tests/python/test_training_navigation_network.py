@@ -56,7 +56,9 @@ def test_negatives_are_elsewhere(folder: Path) -> None:
     anchor, goal = batch.observation[:, -1, 0, 0, 0].long(), batch.goal[:, 0, 0, 0].long()
     away = ~batch.positive
     assert away.float().mean() > 0.7 and bool((batch.dist[away] == 20).all())
-    assert bool((anchor[away] // 40 != goal[away] // 40).all() | ((anchor - goal)[away].abs() > 15).all())
+    other_place = anchor // 80 != goal // 80
+    gap = torch.hypot(0.2 * (anchor % 20 - goal % 20), 5.0 * ((anchor // 40) % 2 - (goal // 40) % 2))
+    assert bool((other_place | (gap > 3.0))[away].all())
 
 
 def test_conditions_without_images_are_not_drawn(folder: Path) -> None:
@@ -119,7 +121,9 @@ def test_the_loss_ignores_waypoints_of_goals_elsewhere(folder: Path) -> None:
     assert float(exact) == pytest.approx(0, abs=1e-6)
     wrong = torch.where(batch.positive[:, None, None], batch.action, batch.action.flip(1) + 3)
     assert float(measures.loss(batch.dist[:, None], wrong, batch, measures.Weights())) == pytest.approx(0, abs=1e-6)
-    assert float(measures.loss(batch.dist[:, None], batch.action + 1, batch, measures.Weights())) > 0.01
+    off = batch.action + torch.tensor([1.0, 0, 0, 0])
+    found = float(measures.loss(batch.dist[:, None], off, batch, measures.Weights()))
+    assert found == pytest.approx(0.5 * 0.5 / 2.5**2), "half of alpha, half of the coordinates"
 
 
 def test_training_steps_reduce_the_loss_and_follow_the_seed(folder: Path) -> None:
