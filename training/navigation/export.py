@@ -48,4 +48,5 @@ def load(file: Path) -> Policy:
     policy = Policy()
     with np.load(file) as arrays:
         policy.load_state_dict({name: torch.from_numpy(arrays[name]) for name in arrays.files})
-    return policy.eval()
+    policy.eval()
+    return policy

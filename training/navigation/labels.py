@@ -38,7 +38,7 @@ class Path:
     @cached_property
     def arc(self) -> Array:
         """Length of the path up to each of its points, (n,) [m]."""
-        return np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(self.points, axis=0), axis=1))])
+        return np.asarray(np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(self.points, axis=0), axis=1))]))
 
     @property
     def length(self) -> float:
@@ -50,7 +50,7 @@ class Path:
         along, arc = np.asarray(along, dtype=np.float64), self.arc
         inside = np.stack([np.interp(along, arc, self.points[:, k]) for k in range(2)], axis=-1)
         end = self.points[-1] - self.points[-2]
-        return inside + np.maximum(along - arc[-1], 0.0)[..., None] * end / np.linalg.norm(end)
+        return np.asarray(inside + np.maximum(along - arc[-1], 0.0)[..., None] * end / np.linalg.norm(end))
 
     def heading(self, along: Array | float) -> Array:
         """Direction of the path over 0.1 m about a length along it [rad]."""
@@ -111,7 +111,7 @@ def waypoints(path: Path, pose: Array, along: float) -> Array:
 
 def distance_steps(along: Array | float, goal: Array | float) -> Array:
     """Steps from a progress to a goal on the same path, 0 … MAX_STEPS."""
-    return np.clip((np.asarray(goal) - np.asarray(along)) / SPACING, 0.0, MAX_STEPS)
+    return np.asarray(np.clip((np.asarray(goal) - np.asarray(along)) / SPACING, 0.0, MAX_STEPS))
 
 
 def _rotated(vector: Array, angle: float) -> Array:

@@ -59,7 +59,8 @@ def validate(network: Network, data: Data, batches: int, size: int, seed: int = 
         columns = [batch.condition, batch.positive, error, gap, direction, heading, dist[:, 0]]
         rows.append(torch.stack([column.float() for column in (*columns, _gap(astray, batch.action) - gap)], 1).cpu())
     table = torch.cat(rows)
-    answer = {name: _means(table[table[:, 0] == number]) for number, name in enumerate(data.conditions)}
+    parts = {name: table[table[:, 0] == number] for number, name in enumerate(data.conditions)}
+    answer = {name: _means(part) for name, part in parts.items() if len(part)}
     return {**answer, "all": _means(table)} if len(data.conditions) > 1 else answer
 
 

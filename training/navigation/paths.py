@@ -99,7 +99,7 @@ def _smooth(space: FreeSpace, points: Array, rounds: int = 80) -> Array:
 
 def nominal_drive(path: Path) -> tuple[Array, Array]:
     """Poses (n, 3) on the path, VIEW_SPACING apart, and their lengths along it (n,) [m]."""
-    along = np.arange(int(path.length / VIEW_SPACING) + 1) * VIEW_SPACING
+    along = np.asarray(np.arange(int(path.length / VIEW_SPACING) + 1) * VIEW_SPACING, np.float64)
     return np.column_stack([path.at(along), path.heading(along)]), along
 
 

@@ -10,6 +10,8 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 Condition = Literal["clear", "adversity"]
+Level = Literal["minor", "major"]
+_LEVELS: tuple[Level, Level] = ("minor", "major")
 CONDITIONS: tuple[Condition, ...] = ("clear", "adversity")
 
 FIRST_SEED = 1000  # places with lower seeds belong to the benchmark
@@ -27,7 +29,7 @@ class Place:
     kind: Literal["house", "warehouse"]
     seed: int
     options: tuple[tuple[str, int], ...]
-    level: Literal["minor", "major"]
+    level: Level
     ev100: float | None = None  # of its images in adversity; None: of the scene
 
     @property
@@ -45,7 +47,7 @@ def places(houses: int, warehouses: int) -> list[Place]:
     answer = []
     for number in range(houses):
         rng = np.random.default_rng((FIRST_SEED + number, 0))
-        level = "major" if number % 2 else "minor"
+        level = _LEVELS[number % 2]
         # Smoke darkens rooms: most cameras would expose longer, and some of the images keep the exposure for clear air.
         brighter = float(rng.uniform(5.0, 7.2) if level == "minor" else rng.uniform(1.5, 5.4))
         ev100 = None if rng.random() < 0.3 else round(brighter, 2)
@@ -53,9 +55,8 @@ def places(houses: int, warehouses: int) -> list[Place]:
         answer.append((number / houses, Place("house", FIRST_SEED + number, options, level, ev100)))
     for number in range(warehouses):
         rng = np.random.default_rng((FIRST_SEED + number, 1))
-        options = (("length", int(rng.integers(24, 37))), ("width", int(rng.integers(16, 25))))
-        level = "major" if number % 2 else "minor"
-        answer.append((number / warehouses, Place("warehouse", FIRST_SEED + number, options, level)))
+        sides = (("length", int(rng.integers(24, 37))), ("width", int(rng.integers(16, 25))))
+        answer.append((number / warehouses, Place("warehouse", FIRST_SEED + number, sides, _LEVELS[number % 2])))
     return [place for _, place in sorted(answer, key=lambda pair: pair[0])]
 
 

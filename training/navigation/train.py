@@ -114,7 +114,7 @@ def train(trainer: Trainer, held: Data | None, curves: Path) -> int:
         losses.zero_()
         count = 0
     with open(curves, "w", newline="") as file:
-        writer = csv.DictWriter(file, fieldnames=list(rows[0]) if rows else ["seconds"], lineterminator="\n")
+        writer = csv.DictWriter(file, fieldnames=list(dict.fromkeys(sum(map(list, rows), []))), lineterminator="\n")
         writer.writeheader()
         writer.writerows(rows)
     return trainer.steps
