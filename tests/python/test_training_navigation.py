@@ -15,7 +15,7 @@ import pytest
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 
 import gloam  # noqa: E402
-from gloam.envs.free_space import FreeSpace  # noqa: E402
+from gloam.navigation.free_space import FreeSpace  # noqa: E402
 from training.navigation import labels, paths, publish, render_all, routes, scenes  # noqa: E402
 
 

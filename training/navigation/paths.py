@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from gloam.envs.free_space import FreeSpace
+from gloam.navigation.free_space import FreeSpace
 
 from .labels import Path
 

@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 import gloam
-from gloam.envs.free_space import FreeSpace
+from gloam.navigation.free_space import FreeSpace
 
 from .labels import Path, waypoints
 from .paths import VIEW_SPACING, Deviation, deviating_drive, nominal_drive, plan

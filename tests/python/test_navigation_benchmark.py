@@ -1,0 +1,170 @@
+"""Episodes of the navigation benchmark: pairs, outcomes, resumption, and how adversity changes planners."""
+
+from __future__ import annotations
+
+import json
+import math
+import shutil
+from pathlib import Path
+
+import gloam
+import numpy as np
+import pytest
+from gloam.navigation.benchmark.episode import EpisodeSpec, Touched, Watch, run_episode
+from gloam.navigation.benchmark.places import LEVELS, ROBOT, Course, Pair, scene_of, smoothed
+from gloam.navigation.benchmark.runner import Request, run
+from gloam.navigation.grid import Grid, length_of, point_ahead
+from gloam.navigation.window import DynamicWindow, WindowOptions
+
+pytest.importorskip("openvino")  # of the walking policy
+
+
+@pytest.fixture(scope="module")
+def course() -> Course:
+    return Course("house")
+
+
+def test_paths_go_around_walls() -> None:
+    blocked = np.zeros((11, 11), bool)
+    blocked[5, :8] = True
+    grid = Grid((0.0, 0.0), 0.1, blocked)
+    path = grid.path((0.0, 0.0), (0.0, 1.0))
+    assert path[0] == (0.0, 0.0) and path[-1] == (0.0, 1.0)
+    assert max(x for x, _ in path) == pytest.approx(0.8)
+    assert length_of(path) == pytest.approx(2 * (0.4 + 0.4 * math.sqrt(2) + 0.1), abs=0.2)
+    blocked[5, :] = True
+    assert Grid((0.0, 0.0), 0.1, blocked).path((0.0, 0.0), (0.0, 1.0)) == []
+    assert point_ahead([(0.0, 0.0), (1.0, 0.0), (2.0, 0.0)], (0.9, 0.3), 0.5) == (2.0, 0.0)
+    assert grid.clearance(0.3)[3, 0] == pytest.approx(0.2)
+
+
+def test_the_window_avoids_obstacles_and_turns_to_the_target() -> None:
+    window = DynamicWindow(WindowOptions())
+    free = window.choose((1.0, 0.0), np.empty((0, 2)))
+    assert free.vx == pytest.approx(0.4) and abs(free.yaw_rate) < 0.1
+    assert window.choose((-1.0, 0.3), np.empty((0, 2))).yaw_rate > 0.5
+    wall = np.stack([np.full(60, 0.5), np.linspace(-1.5, 1.5, 60)], axis=-1)
+    assert window.choose((2.0, 0.0), wall).vx < 0.2
+
+
+def test_pairs_are_reachable_at_every_level_and_shared(course: Course) -> None:
+    pairs = [course.pair(seed) for seed in range(8)]
+    again = [course.pair(seed) for seed in range(8)]
+    assert [p.start for p in pairs] == [p.start for p in again]
+    assert len({p.start for p in pairs}) == 8
+    for pair in pairs:
+        assert 3.9 <= pair.shortest <= 12.5
+        assert math.dist(pair.path[0], pair.start[:2]) < 0.11 and math.dist(pair.path[-1], pair.goal) < 0.11
+        assert pair.shortest >= math.dist(pair.start[:2], pair.goal) - 0.2
+        blocked = [course.grid.blocked[course.grid.index(p)] for p in pair.path]
+        assert np.mean(blocked) < 0.05, "smoothing may cut a corner by a cell"
+    keys = {(level, EpisodeSpec("a", "house", level, 3).pair_seed) for level in LEVELS}
+    assert len({seed for _, seed in keys}) == 1
+    with pytest.raises(gloam.UsageError, match="no paths"):
+        course.pair(1, reach=(500.0, 600.0))
+    with pytest.raises(gloam.NotFoundError, match="there is no scene 'home'"):
+        scene_of("home", "none")
+
+
+def test_smoothing_keeps_the_ends() -> None:
+    corner = [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0)]
+    assert smoothed(corner)[0] == (0.0, 0.0) and smoothed(corner)[-1] == (1.0, 1.0)
+
+
+def test_an_episode_verifies_and_repeats(course: Course, tmp_path: Path) -> None:
+    spec = EpisodeSpec("route", "house", "none", 1)
+    pair = course.pair(spec.pair_seed)
+    results = [run_episode(spec, pair, tmp_path / str(k), tmp_path / "maps") for k in range(2)]
+    assert results[0]["outcome"] == "success" and results[0]["final_distance"] < 1.0
+    assert results[0]["hash"] == results[1]["hash"]
+    assert gloam.replay(tmp_path / "0" / "run.mcap").verify().is_equal
+    assert json.loads((tmp_path / "0" / "episode.json").read_text())["hash"] == results[0]["hash"]
+
+
+def test_a_start_at_the_goal_succeeds_at_once(course: Course, tmp_path: Path) -> None:
+    pair = course.pair(5)
+    here = Pair(pair.start, pair.start[:2], (pair.start[:2], pair.start[:2]), 0.0)
+    result = run_episode(EpisodeSpec("straight", "house", "none", 0, log=False), here, tmp_path / "e", tmp_path / "maps")
+    assert result["outcome"] == "success" and result["time"] < 0.1 and result["log"] is None
+
+
+def test_a_planner_that_cannot_start_is_an_error(course: Course, tmp_path: Path) -> None:
+    spec = EpisodeSpec("gnm", "house", "none", 0, log=False)
+    result = run_episode(spec, course.pair(spec.pair_seed), tmp_path / "e", tmp_path / "maps")
+    assert result["outcome"] == "error" and "needs weights" in result["message"] and not result["success"]
+
+
+class _Robot:
+    def __init__(self, sim: _Sim) -> None:
+        self.pose = gloam.Pose(np.array([*sim.at, 0.3]), np.array([1.0, 0, 0, 0]))
+
+
+class _Sim:
+    """A simulation's side of Watch: a place and contacts over time."""
+
+    def __init__(self) -> None:
+        self.time, self.at, self.hits = 0.0, (0.0, 0.0), []
+
+    @property
+    def robots(self) -> dict[str, _Robot]:
+        return {ROBOT: _Robot(self)}
+
+    def contacts(self) -> list[dict[str, object]]:
+        return [
+            {"geoms": (f"{ROBOT}/trunk", name), "normal": normal, "position": (0, 0, 0.2), "force": (1, 0, 0)}
+            for name, normal in self.hits
+        ]
+
+
+def test_collisions_count_once_per_touch() -> None:
+    sim, touched = _Sim(), Touched()
+    for k in range(60):
+        sim.time = 0.05 * k
+        sim.hits = [("living/chair_2/collider_1", (1, 0, 0)), ("floor/plane", (0, 0, 1))] if k < 20 or k > 40 else []
+        touched.sample(sim)  # type: ignore[arg-type]
+    assert touched.by_object == {"chair": 2} and touched.total() == 2
+
+
+def test_outcomes() -> None:
+    def watched(steps: int, speed: float, hits: bool) -> Watch:
+        sim, watch = _Sim(), Watch((3.0, 0.0))
+        sim.hits = [("wall_1/c", (1, 0, 0))] if hits else []
+        for k in range(steps):
+            sim.time, sim.at = 0.05 * k, (speed * 0.05 * k, 0.0)
+            if watch(sim):  # type: ignore[arg-type]
+                break
+        return watch
+
+    assert watched(200, 0.5, False).outcome == "success"
+    assert watched(400, 0.0, False).outcome == "stuck"
+    assert watched(400, 0.0, True).outcome == "collided"
+    assert watched(40, 0.5, False).outcome == ""
+
+
+def test_requests_are_checked(tmp_path: Path) -> None:
+    for bad, message in (
+        (Request(("no",)), "no planner"), (Request(("route",), ("moon",)), "no scene"),
+        (Request(("route",), levels=("much",)), "no level"), (Request(()), "name each"),
+        (Request(("route", "route")), "name each"), (Request(("route",), episodes=0), "1 to 100000"),
+    ):  # fmt: skip
+        with pytest.raises(gloam.Error, match=message):
+            run(bad, tmp_path / "x")
+
+
+@pytest.mark.slow
+def test_runs_continue_and_adversity_is_paired(tmp_path: Path) -> None:
+    request = Request(("straight", "route"), ("house",), ("none", "major"), 1)
+    first = run(request, tmp_path, workers=1)
+    assert len(first) == 4 and {r["outcome"] for r in first if r["planner"] == "route"} == {"success"}
+    assert len({tuple(r["start"]) for r in first}) == 1
+    kept = {p: p.stat().st_mtime_ns for p in tmp_path.rglob("episode.json")}
+    gone = tmp_path / "episodes" / "straight" / "house" / "none" / "0000"
+    before = json.loads((gone / "episode.json").read_text())["hash"]
+    shutil.rmtree(gone)
+    second = run(request, tmp_path, workers=1)
+    assert [r["hash"] for r in second] == [r["hash"] for r in first]
+    assert json.loads((gone / "episode.json").read_text())["hash"] == before
+    same = [p for p, time in kept.items() if p.stat().st_mtime_ns == time]
+    assert len(same) == 3, "finished episodes are not run again"
+    with pytest.raises(gloam.UsageError, match="another benchmark"):
+        run(Request(("straight",), ("house",), ("none", "major"), 1), tmp_path)
