@@ -21,8 +21,10 @@ GLOAM_HD void each_of_block(const TemporalPicture& p, int column, int row, int m
 
 /// Standard errors by which the noisy light of a window may differ from the shown light by chance.
 inline constexpr float kMostErrors = 3;
-inline constexpr int kDetailRadius = 1;      ///< of the window [px]
-inline constexpr float kLeastDetailAge = 4;  ///< history from which errors are known [pictures]
+inline constexpr int kDetailRadius = 1;  ///< of the window [px]
+/// History from which errors are known [pictures]. The first picture after a cut counts 16 and has
+/// no deviation of its own, so it must have lost its weight.
+inline constexpr float kLeastDetailAge = 40;
 
 /// Makes the shown light of composed light: adds details of which the noisy light is certain, away
 /// from borders, whose pixels differ from picture to picture. After compose() of all pixels.
@@ -34,11 +36,11 @@ GLOAM_HD void add_details(const TemporalPicture& p, int x, int y) {
   for (int b = max(y - kDetailRadius, 0); b <= min(y + kDetailRadius, p.height - 1); ++b) {
     for (int a = max(x - kDetailRadius, 0); a <= min(x + kDetailRadius, p.width - 1); ++a) {
       const size_t j = p.index(a, b);
-      const float known = min(p.now.age[j], kMostNoisy), mean = luminance(p.now.noisy[j]);
-      if (known < kLeastDetailAge || (p.now.part[j] & kBorder) != 0) return;
+      const float mean = luminance(p.now.noisy[j]);
+      if (p.now.age[j] < kLeastDetailAge || (p.now.part[j] & kBorder) != 0) return;
       noisy += p.now.noisy[j];
       composed += p.color[j];
-      variance += max(p.now.square[j] - mean * mean, 0.0f) / (known - 1);
+      variance += max(p.now.square[j] - mean * mean, 0.0f) / (kMostNoisy - 1);
     }
   }
   const Vec3f lost = noisy - composed;
