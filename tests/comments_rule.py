@@ -10,7 +10,11 @@ HASHES = {".toml", ".cmake"}
 NAME = re.compile(r"(?<![\w./*<>{}$\-])((?:[\w\-]+/)*[\w\-]+\.(?:h|cc|cu|cuh|py|pyi|js|mjs|cmake|md))\b(?!\.\w)")
 # Of other projects, and made by the build.
 OUTSIDE = {"jpeglib.h", "zmq.h", "mjspec.h", "mujoco/mjspec.h", "mjspecmacro.h", "mjxmacro.h", "rl/exporter_utils.py",
-           "mjcf_elements.h", "gloam/mjcf_elements.h", "_core.pyi", "FILE.cu"}
+           "mjcf_elements.h", "gloam/mjcf_elements.h", "_core.pyi", "FILE.cu",
+           # of the authors of GNM, ViNT and NoMaD
+           "data_utils.py", "train/vint_train/data/data_utils.py", "vint_dataset.py", "deployment/src/utils.py", "navigate.py",
+           "deployment/src/navigate.py", "pd_controller.py", "deployment/src/pd_controller.py", "create_topomap.py",
+           "deployment/src/create_topomap.py", "conditional_unet1d.py"}
 
 
 def comments(path, text):

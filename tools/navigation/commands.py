@@ -40,6 +40,7 @@ def _add_navigate(commands: argparse._SubParsersAction[argparse.ArgumentParser])
     command.add_argument("--duration", type=float, help="[s]; default: the scene's")
     command.add_argument("--seed", type=int, help="default: the scene's")
     command.add_argument("--log", help="file of a log to record (MCAP)")
+    command.add_argument("--topics", default="/clock,/tf*", help="topics of the log beside states and inputs; default: %(default)s")
     command.add_argument("--overwrite", action="store_true", help="replace an existing log")
     command.set_defaults(action=_navigate)
 
@@ -51,7 +52,7 @@ def _navigate(given: argparse.Namespace) -> int:
     with gloam.load(given.scene, seed=given.seed) as sim:
         until = given.duration if given.duration is not None else sim.scene.duration
         if given.log:
-            with sim.record(given.log, overwrite=given.overwrite):
+            with sim.record(given.log, given.topics.split(","), overwrite=given.overwrite):
                 driver = drive(sim, until)
         else:
             driver = drive(sim, until)

@@ -47,7 +47,7 @@ class Grid:
         """Middles of the cells of the cheapest path from start to goal [m], or [] if there is none.
 
         cost: (rows, columns), >= 0, added to each metre of the path. Blocked cells at the start are left, because a
-        robot may touch what blocks them.
+        robot may touch an obstacle.
         """
         begin, end = self.index(start), self.index(goal)
         weights = 1.0 + (np.zeros(self.blocked.shape) if cost is None else cost)
