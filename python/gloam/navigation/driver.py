@@ -6,7 +6,7 @@ import math
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 
@@ -184,4 +184,4 @@ def _checked(answer: Any) -> Answer:
         raise TypeError(f"a planner answers with a Velocity, Waypoints or Arrived, got {type(answer).__name__}")
     if not np.isfinite(values).all():
         raise ValueError("the answer is not finite")
-    return answer
+    return cast("Answer", answer)

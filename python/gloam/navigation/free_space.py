@@ -6,6 +6,7 @@ import re
 from collections.abc import Collection
 
 import numpy as np
+from numpy.typing import NDArray
 
 import gloam
 from gloam.navigation.planner import Array
@@ -21,7 +22,7 @@ class FreeSpace:
     Obstacles are approximated by their bounding boxes at the initial state.
     """
 
-    def __init__(self, origin: tuple[float, float], cell: float, blocked: Array) -> None:
+    def __init__(self, origin: tuple[float, float], cell: float, blocked: NDArray[np.bool_]) -> None:
         self.origin = np.asarray(origin, dtype=np.float64)
         self.cell = cell
         self.blocked = blocked

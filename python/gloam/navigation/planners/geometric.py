@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -81,7 +82,7 @@ class LidarFollower(_OnGrid):
     """Knows its pose and the direction of the goal, and maps obstacles with its LiDAR on the way: unknown cells count
     as free. Cells are cleared again when beams pass them, so that people who walk on leave no wall behind."""
 
-    needs: frozenset[Need] = frozenset({"scan"})
+    needs: ClassVar[frozenset[Need]] = frozenset({"scan"})
     heights = (-0.22, 0.3)  # of obstacles over the robot's origin [m]
     cell = 0.1
     reach = 6.0  # of the map around start and goal [m]
