@@ -96,12 +96,14 @@ class Planner(ABC):
     """Base class of planners. Override the class variables or set them on the instance.
 
     rate: calls per second of simulation time; latency: simulation time between an observation and the application of
-    its answer [s]; needs: observations other than pose and velocity; image_size: (width, height) [px].
+    its answer [s]; needs: observations other than pose and velocity; uses_map: whether it
+    reads Task.map, which the benchmark then renders; image_size: (width, height) [px].
     """
 
     rate: float = 4.0
     latency: float = 0.1
     needs: ClassVar[frozenset[Need]] = frozenset()
+    uses_map: ClassVar[bool] = True
     image_size: tuple[int, int] = (85, 64)
 
     @abstractmethod

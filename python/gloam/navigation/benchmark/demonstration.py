@@ -17,26 +17,25 @@ _SIZE = (160, 120)  # [px]
 
 
 def poses_along(pair: Pair, spacing: float = SPACING) -> list[tuple[float, float, float]]:
-    """(x, y, yaw) every `spacing` metres from start to goal; the heading is that of the path ahead [m, rad]."""
+    """(x, y, yaw) every `spacing` metres from start to goal; the heading follows the path ahead [m, rad]."""
     points = np.array(pair.path)
     lengths = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(points, axis=0).T))])
     count = max(2, math.ceil(float(lengths[-1]) / spacing) + 1)
     at = np.linspace(0.0, float(lengths[-1]), count)
     x, y = np.interp(at, lengths, points[:, 0]), np.interp(at, lengths, points[:, 1])
     ahead = np.minimum(at + 0.6, lengths[-1])
-    behind = ahead - 0.6  # near the goal the heading is that of the last part
+    behind = ahead - 0.6  # near the goal the heading follows the last part
     dx = np.interp(ahead, lengths, points[:, 0]) - np.interp(behind, lengths, points[:, 0])
     dy = np.interp(ahead, lengths, points[:, 1]) - np.interp(behind, lengths, points[:, 1])
     return [(float(a), float(b), float(c)) for a, b, c in zip(x, y, np.arctan2(dy, dx), strict=True)]
 
 
 def demonstrate(place: str, pair: Pair) -> TopologicalMap:
-    """The map of a pair: the robot stands at each node, at level none. The times are those of a walk at TOP_SPEED."""
+    """The map of a pair: the robot stands at each node, at level none. Node times correspond to a walk at TOP_SPEED."""
     world = world_of(place, "none")
     nodes: list[Node] = []
     with gloam.Simulation(world) as sim:
-        joint = sim.world.joints.index(f"{ROBOT}/root") if f"{ROBOT}/root" in sim.world.joints else _free_joint(sim)
-        first = int(sim.memory.array("jnt_qposadr")[joint])
+        first = int(sim.memory.array("jnt_qposadr")[_free_joint(sim)])
         rest = np.array(sim.memory.array("qpos"))
         for k, (x, y, yaw) in enumerate(poses_along(pair)):
             qpos = rest.copy()

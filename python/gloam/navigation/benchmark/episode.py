@@ -96,7 +96,6 @@ class Watch:
         self.goal, self.touched = goal, Touched()
         self.length, self.outcome = 0.0, ""
         self.places: list[tuple[float, Point]] = []
-        self.ranges: list[float] = []
 
     def __call__(self, sim: gloam.Simulation) -> bool:
         pose = sim.robots[ROBOT].pose
@@ -145,7 +144,7 @@ def run_episode(spec: EpisodeSpec, pair: Pair, folder: Path, maps: Path) -> dict
 def _drive(spec: EpisodeSpec, pair: Pair, folder: Path, maps: Path, limit: float) -> dict[str, Any]:
     world = world_of(spec.place, spec.level)
     planner = make_planner(spec.planner, **dict(spec.options))
-    map_ = map_of(spec.place, pair, maps / spec.place / f"{spec.number:04}")
+    map_ = map_of(spec.place, pair, maps / spec.place / f"{spec.number:04}") if planner.uses_map else None
     task = Task(ROBOT, spec.pair_seed, pair.goal, map_, world, TOP_SPEED, RADIUS)
     with gloam.Simulation(world, seed=spec.pair_seed) as sim:
         rig = Rig(ROBOT, CAMERA, LIDAR, {"tier": spec.tier})

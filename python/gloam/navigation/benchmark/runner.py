@@ -28,7 +28,7 @@ from ..planner import planner_names
 from .episode import EpisodeSpec, run_episode
 from .places import LEVELS, PLACES, Course
 
-_MOST_CRASHES = 3  # of worker processes with one episode, which then counts as an error
+_MOST_CRASHES = 3  # of worker processes with one episode, before the benchmark stops
 
 
 @dataclass(frozen=True)

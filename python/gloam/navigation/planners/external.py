@@ -16,7 +16,7 @@ import json
 import shlex
 import subprocess
 from collections.abc import Callable, Sequence
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -40,6 +40,8 @@ class ExternalPlanner(Planner):
     """address: of the other process's socket, such as "tcp://127.0.0.1:7801" or "ipc:///tmp/planner"; command: program
     to start for the run, "" = it is running; needs: of "image", "depth", "scan"; timeout: wall time after which an
     answer is given up [s]. Errors: UsageError; UnsupportedError without pyzmq."""
+
+    uses_map: ClassVar[bool] = False
 
     def __init__(
         self,

@@ -1,4 +1,4 @@
-"""Baselines that know or measure geometry: A* with a dynamic window, on the scene's map or on that of a LiDAR."""
+"""Baselines that know or measure geometry: A* with a dynamic window, on the scene's geometry or on a map from a LiDAR."""
 
 from __future__ import annotations
 
@@ -35,6 +35,7 @@ def _local(points: Array, observation: Observation, reach: float = 2.0) -> Array
 class _OnGrid(Planner):
     """Follows the cheapest path on a grid. radius: of the robot for the dynamic window [m]."""
 
+    uses_map: ClassVar[bool] = False
     radius = 0.2
 
     def reset(self, task: Task) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import ClassVar
 
 import gloam
 
@@ -18,6 +19,8 @@ def towards(point: tuple[float, float], top_speed: float, turn_rate: float = 1.0
 
 class StraightLine(Planner):
     """Drives straight to the goal's position, whatever is in the way: the least that any planner must beat."""
+
+    uses_map: ClassVar[bool] = False
 
     def reset(self, task: Task) -> None:
         if task.goal is None:
