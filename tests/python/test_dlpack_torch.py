@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import shutil
 import sys
 from pathlib import Path
 from typing import Any
@@ -49,12 +48,7 @@ print("without a copy", torch.__version__)
 @pytest.mark.slow
 @pytest.mark.skipif(sys.version_info[:2] != (3, 11), reason="PyTorch's wheel of 540 MB is pinned for Python 3.11 alone")
 def test_pytorch_sees_the_same_memory(pendulum: Path, run_python: Any) -> None:
-    if shutil.which("gcc") is None or shutil.which("readelf") is None:
-        pytest.skip("stand-ins for CUDA's libraries are made with gcc")
-    try:
-        packages, libraries = torch_cpu.torch_cpu()
-    except RuntimeError as error:
-        pytest.skip(f"no PyTorch: {error}")
+    packages, libraries = torch_cpu.torch_or_skip()
     path = os.pathsep.join([str(Path(__file__).resolve().parents[2] / "python"), str(packages)])
     told = run_python(CODE, PYTHONPATH=path, LD_LIBRARY_PATH=libraries, timeout=120)
     assert "without a copy 2." in told.stdout

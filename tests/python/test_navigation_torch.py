@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import shutil
 import sys
 from pathlib import Path
 from typing import Any
@@ -19,12 +18,7 @@ ROOT = Path(__file__).resolve().parents[2]
 def test_converted_networks_equal_pytorch(run_python: Any) -> None:
     pytest.importorskip("onnx")
     pytest.importorskip("openvino")
-    if shutil.which("gcc") is None or shutil.which("readelf") is None:
-        pytest.skip("stand-ins for CUDA's libraries are made with gcc")
-    try:
-        packages, libraries = torch_cpu.torch_cpu()
-    except RuntimeError as error:
-        pytest.skip(f"no PyTorch: {error}")
+    packages, libraries = torch_cpu.torch_or_skip()
     folders = [ROOT / "python", packages, ROOT / "tools" / "navigation", ROOT / "tests" / "python", ROOT / "tests"]
     path = os.pathsep.join(str(folder) for folder in folders)
     code = (ROOT / "tests" / "python" / "navigation_torch.py").read_text(encoding="utf-8")

@@ -103,3 +103,15 @@ def torch_cpu() -> tuple[Path, str]:
 
 if __name__ == "__main__":
     print(torch_cpu()[0])
+
+
+def torch_or_skip() -> tuple[Path, str]:
+    """torch_cpu(); skips the test where PyTorch cannot be prepared."""
+    import pytest
+
+    if shutil.which("gcc") is None or shutil.which("readelf") is None:
+        pytest.skip("stand-ins for CUDA's libraries are made with gcc")
+    try:
+        return torch_cpu()
+    except RuntimeError as error:
+        pytest.skip(f"no PyTorch: {error}")
