@@ -44,8 +44,10 @@ Status find_files(const FileFinder& finder, Scene* scene) {
   for (AgentOptions& agent : scene->agents) GLOAM_TRY_STATUS(finder.find(&agent.tree, agent.loc));
   if (scene->sky) GLOAM_TRY_STATUS(finder.find(&scene->sky->file, scene->sky->loc));
   if (scene->planner) {
-    GLOAM_TRY_STATUS(finder.find(&scene->planner->map, scene->planner->loc));
-    GLOAM_TRY_STATUS(finder.find(&scene->planner->weights, scene->planner->loc));
+    PlannerOptions& planner = *scene->planner;
+    GLOAM_TRY_STATUS(finder.find_file_or_folder(&planner.map, planner.loc));
+    GLOAM_TRY_STATUS(finder.find_file_or_folder(&planner.weights, planner.loc));
+    GLOAM_TRY_STATUS(finder.find(&planner.library, planner.loc));
   }
   for (VolumeOptions& volume : scene->volumes) {
     GLOAM_TRY_STATUS(finder.find(&volume.grid, volume.loc));

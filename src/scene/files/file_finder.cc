@@ -91,6 +91,15 @@ Status FileFinder::find(fs::path* file, const SourceLoc& loc) const {
   return check_file(*file, written, loc);
 }
 
+Status FileFinder::find_file_or_folder(fs::path* path, const SourceLoc& loc) const {
+  if (path->empty()) return {};
+  const std::string written = path->string();
+  GLOAM_TRY_STATUS(resolve(path, written, loc));
+  std::error_code code;
+  if (fs::is_directory(*path, code)) return {};
+  return check_file(*path, written, loc);
+}
+
 Status FileFinder::find_model(fs::path* file, const SourceLoc& loc) const {
   if (file->empty()) return {};
   const std::string written = file->string();

@@ -29,6 +29,8 @@ class FileFinder {
   /// Makes a path of the scene absolute and refuses it if it leaves the scene's root and Gloam's
   /// own robots. No path, no file.
   Status find(std::filesystem::path* file, const SourceLoc& loc) const;
+  /// `find` for a path that may also be a folder, all of whose files are then readable.
+  Status find_file_or_folder(std::filesystem::path* path, const SourceLoc& loc) const;
   /// `find` and check_model_file.
   Status find_model(std::filesystem::path* file, const SourceLoc& loc) const;
 

@@ -13,6 +13,7 @@ void visit_fields(Visitor& v, PlannerOptions& o) {
   v("lidar", o.lidar, FieldRule{});
   v("map", o.map, FieldRule{});
   v("weights", o.weights, FieldRule{});
+  v("library", o.library, FieldRule{});
   v("command", o.command, FieldRule{});
   v("address", o.address, FieldRule{});
   v("rate", o.rate, FieldRule{.unit = "Hz", .min = 0, .max = 1000});

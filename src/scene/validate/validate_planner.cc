@@ -22,6 +22,11 @@ Status validate_planner(const PlannerOptions& planner, const std::vector<RobotOp
     return error("has a 'command' or an 'address'", "these belong to type = \"external\"");
   if (is_external && planner.address.empty())
     return error("needs an 'address'", "for example address = \"tcp://127.0.0.1:7801\"");
+  const bool is_library = planner.type == "library";
+  if (!is_library && !planner.library.empty())
+    return error("has a 'library'", "this belongs to type = \"library\"");
+  if (is_library && planner.library.empty())
+    return error("needs a 'library'", "for example library = \"planner.so\"");
   if (planner.latency < 0 && planner.latency != -1)
     return error("has a negative 'latency'", "remove it for the planner's own latency");
   return {};
