@@ -16,7 +16,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 
 import gloam  # noqa: E402
 from gloam.navigation.free_space import FreeSpace  # noqa: E402
-from training.navigation import labels, paths, publish, render_all, routes, scenes  # noqa: E402
+from training.navigation import labels, pairs, paths, publish, render_all, routes, scenes  # noqa: E402
 
 
 def two_rooms() -> FreeSpace:
@@ -113,6 +113,27 @@ def test_views_follow_the_seed() -> None:
     for field in fields(routes.Views):
         assert np.array_equal(getattr(first, field.name), getattr(again, field.name)), field.name
     assert len(first) >= 200 and not np.array_equal(first.pose[:50], other.pose[:50])
+
+
+def test_pairs_see_each_other_across_free_space() -> None:
+    space = two_rooms()
+    rng = np.random.default_rng(2)
+    poses = np.array([[*space.sample(rng), rng.uniform(-np.pi, np.pi)] for _ in range(400)])
+    rule = pairs.PairRule(per_view=8)
+    found = pairs.pairs_of(poses, space, np.random.default_rng(1), rule)
+    assert len(found.anchor) > 400 and np.bincount(found.anchor).max() <= 8
+    start, offset = poses[found.anchor], poses[found.goal, :2] - poses[found.anchor, :2]
+    bearing = np.arctan2(offset[:, 1], offset[:, 0])
+    assert np.abs(labels.wrap(bearing - start[:, 2])).max() <= rule.aside
+    assert np.abs(labels.wrap(poses[found.goal, 2] - bearing)).max() <= rule.turned
+    assert np.allclose(0.1 * found.dist, np.hypot(*offset.T)) and found.dist.max() <= 25
+    through = (start[:, 0] - 5) * (poses[found.goal, 0] - 5) < 0  # from one room into the other
+    cross = start[:, 1] + (5 - start[:, 0]) / np.where(through, offset[:, 0], 1.0) * offset[:, 1]
+    assert through.any() and (np.abs(cross[through] - 2.95) < 0.8).all(), "only through the door"
+    left = found.action[:, -1, 1] > 0
+    assert (left == (labels.wrap(bearing - start[:, 2]) > 0))[np.abs(found.action[:, -1, 1]) > 0.05].all()
+    none = pairs.pairs_of(poses[:1], space, np.random.default_rng(1), rule)
+    assert none.action.shape == (0, 5, 4) and len(none.dist) == 0
 
 
 def test_places_differ_from_the_benchmark_and_follow_the_seed() -> None:

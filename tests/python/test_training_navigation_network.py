@@ -24,6 +24,10 @@ def folder(tmp_path: Path) -> Path:
     pose = np.column_stack([along, 5.0 * route, np.zeros(count)]).astype(np.float32)
     action = np.tile(np.array([[k, 0.1 * k, 0.8, 0.6] for k in range(1, 6)], np.float32), (count, 1, 1))
     table = {"place": place, "route": 2 * place + route, "drive": drive, "along": along, "pose": pose, "action": action}
+    # Each view is paired with the next one of its drive; the distance and the label tell pairs from goals on the path.
+    anchor = np.flatnonzero(step < 19)
+    table |= {"pair_anchor": anchor, "pair_goal": anchor + 1, "pair_dist": np.full(len(anchor), 3.0, np.float32)}
+    table["pair_action"] = np.full((len(anchor), 5, 4), 7.0, np.float32)
     names = np.array([f"house_{number}" for number in range(3)])
     np.savez(tmp_path / "routes.npz", **table, names=names, view_spacing=np.float32(0.2))
     images = np.broadcast_to(np.arange(count, dtype=np.uint8)[:, None, None, None], (count, 64, 85, 3))
@@ -39,21 +43,28 @@ def sample(folder: Path, conditions: list[str], sampling: dataset.Sampling, seed
 
 
 def test_samples_are_on_the_path_and_within_bounds(folder: Path) -> None:
-    batch = sample(folder, ["clear"], dataset.Sampling(negative=0.0))
-    rows, goals = batch.observation[:, :, 0, 0, 0].long(), batch.goal[:, 0, 0, 0].long()
-    anchor = rows[:, -1]
+    batch = sample(folder, ["clear"], dataset.Sampling(negative=0.0, crossing=0.0))
+    anchor, goals = batch.observation[:, 0, 0, 0].long(), batch.goal[:, 0, 0, 0].long()
     assert bool((goals // 40 == anchor // 40).all()) and bool(((goals // 20) % 2 == 0).all()), "on the path of the route"
     wanted = (2.0 * (goals % 20 - anchor % 20)).clamp(0, 20)
     assert torch.allclose(batch.dist, wanted.float(), atol=1e-3)
     assert batch.dist.min() >= 0 and batch.dist.max() == 20
-    gaps = rows[:, 1:] - rows[:, :-1]
-    assert bool((gaps >= 0).all()) and bool((gaps <= 1).all()) and bool((rows // 20 == anchor[:, None] // 20).all())
     assert bool(batch.positive.all())
+
+
+def test_goals_across_are_pairs_with_their_own_labels(folder: Path) -> None:
+    batch = sample(folder, ["clear"], dataset.Sampling(negative=0.0, crossing=0.5))
+    crossing = batch.action[:, 0, 0] == 7.0
+    assert 0.4 < crossing.float().mean() < 0.6 and bool((batch.dist[crossing] == 3.0).all())
+    anchor, goal = batch.observation[crossing, 0, 0, 0].long(), batch.goal[crossing, 0, 0, 0].long()
+    assert bool((goal == anchor + 1).all())
+    pairs = dataset.Data(folder, ["adversity"], [0, 1, 2], "cpu").pairs
+    assert len(pairs) == 2 * 2 * 2 * 19, "the scene that failed has no pairs"
 
 
 def test_negatives_are_elsewhere(folder: Path) -> None:
     batch = sample(folder, ["clear"], dataset.Sampling(negative=1.0))
-    anchor, goal = batch.observation[:, -1, 0, 0, 0].long(), batch.goal[:, 0, 0, 0].long()
+    anchor, goal = batch.observation[:, 0, 0, 0].long(), batch.goal[:, 0, 0, 0].long()
     away = ~batch.positive
     assert away.float().mean() > 0.7 and bool((batch.dist[away] == 20).all())
     other_place = anchor // 80 != goal // 80
@@ -63,7 +74,7 @@ def test_negatives_are_elsewhere(folder: Path) -> None:
 
 def test_conditions_without_images_are_not_drawn(folder: Path) -> None:
     batch = sample(folder, ["clear", "adversity"], dataset.Sampling(negative=0.0, mixed=1.0))
-    place = batch.observation[:, -1, 0, 0, 0].long() // 80
+    place = batch.observation[:, 0, 0, 0].long() // 80
     assert bool((batch.condition[place == 1] == 0).all()) and bool((batch.goal_condition[place == 1] == 0).all())
     assert set(batch.condition.tolist()) == {0, 1} and bool((batch.condition != batch.goal_condition).any())
     with pytest.raises(ValueError, match="no images"):
@@ -94,20 +105,20 @@ def test_mirror_images_have_mirrored_labels(folder: Path) -> None:
 
 
 def test_changes_keep_shape_and_range() -> None:
-    images = torch.randint(0, 256, (6, 4, 64, 85, 3), dtype=torch.uint8)
+    images = torch.randint(0, 256, (6, 64, 85, 3), dtype=torch.uint8)
     off = augment.Augmentation(0, 0, 0, 0, 0, 0, 0)
     same = augment.changed(images, torch.Generator().manual_seed(0), off)
     assert torch.allclose(same, images.float() / 255, atol=1e-4)
     made = augment.changed(images, torch.Generator().manual_seed(0), augment.Augmentation())
     assert made.shape == images.shape and made.min() >= 0 and made.max() <= 1 and (made - same).abs().mean() > 0.01
     flat = dataset.normalised(same)
-    wanted = (images[:, 1, :, :, 2].float() / 255 - dataset.MEAN[2]) / dataset.STD[2]
-    assert flat.shape == (6, 12, 64, 85) and torch.allclose(flat[:, 5], wanted, atol=1e-3)
+    wanted = (images[:, :, :, 2].float() / 255 - dataset.MEAN[2]) / dataset.STD[2]
+    assert flat.shape == (6, 3, 64, 85) and torch.allclose(flat[:, 2], wanted, atol=1e-3)
 
 
 def test_network_has_the_shapes_of_gnm() -> None:
     policy = model.Policy().eval()
-    dist, action = policy(torch.randn(2, 12, 64, 85), torch.randn(2, 3, 64, 85))
+    dist, action = policy(torch.randn(2, 3, 64, 85), torch.randn(2, 3, 64, 85))
     assert dist.shape == (2, 1) and action.shape == (2, 5, 4)
     assert torch.allclose(action[:, :, 2:].norm(dim=2), torch.ones(2, 5), atol=1e-4)
     assert 1e6 < model.parameters_of(policy) < 2e6
@@ -116,7 +127,7 @@ def test_network_has_the_shapes_of_gnm() -> None:
 
 
 def test_the_loss_ignores_waypoints_of_goals_elsewhere(folder: Path) -> None:
-    batch = sample(folder, ["clear"], dataset.Sampling(negative=1.0))
+    batch = sample(folder, ["clear"], dataset.Sampling(negative=1.0, crossing=0.0))
     exact = measures.loss(batch.dist[:, None], batch.action, batch, measures.Weights())
     assert float(exact) == pytest.approx(0, abs=1e-6)
     wrong = torch.where(batch.positive[:, None, None], batch.action, batch.action.flip(1) + 3)
@@ -139,7 +150,7 @@ def test_training_steps_reduce_the_loss_and_follow_the_seed(folder: Path) -> Non
 def test_weights_are_read_back(tmp_path: Path) -> None:
     policy = model.Policy().eval()
     report = export.write(policy, tmp_path)
-    inputs = torch.randn(1, 12, 64, 85), torch.randn(1, 3, 64, 85)
+    inputs = torch.randn(1, 3, 64, 85), torch.randn(1, 3, 64, 85)
     for a, b in zip(export.load(tmp_path / "weights.npz")(*inputs), policy(*inputs), strict=True):
         assert torch.equal(a, b)
     if "largest_difference" in report:

@@ -32,38 +32,35 @@ def mirrored(batch: Batch, mirror: Tensor) -> Batch:
     action = batch.action.clone()
     action[:, :, 1] *= sign
     action[:, :, 3] *= sign
-    observation = torch.where(mirror[:, None, None, None, None], batch.observation.flip(3), batch.observation)
-    goal = torch.where(mirror[:, None, None, None], batch.goal.flip(2), batch.goal)
+    is_mirrored = mirror[:, None, None, None]
+    observation = torch.where(is_mirrored, batch.observation.flip(2), batch.observation)
+    goal = torch.where(is_mirrored, batch.goal.flip(2), batch.goal)
     return replace(batch, observation=observation, goal=goal, action=action)
 
 
 def changed(images: Tensor, generator: torch.Generator, ranges: Augmentation) -> Tensor:
-    """Images (n, k, h, w, 3) uint8 as 0 … 1 floats with random light, shift, blur, noise and erased boxes.
-
-    The k images of a sample have the same light and shift, as images of one camera do.
-    """
-    count, views, height, width, _ = images.shape
+    """Images (n, h, w, 3) uint8 as 0 … 1 floats with random light, shift, blur, noise and erased boxes."""
+    count, height, width, _ = images.shape
 
     def uniform(*shape: int) -> Tensor:
         return 2 * torch.rand((count, *shape), generator=generator, device=images.device) - 1
 
-    x = images.float() / 255
-    x = x * torch.exp2(ranges.gain * uniform(1, 1, 1, 1) + ranges.tint * uniform(1, 1, 1, 3))
-    middle = x.mean((1, 2, 3, 4), keepdim=True)
-    x = (middle + (x - middle) * (1 + ranges.contrast * uniform(1, 1, 1, 1))).clamp(0, 1)
-    flat = x.permute(0, 1, 4, 2, 3).reshape(count, views * 3, height, width)
+    x = images.permute(0, 3, 1, 2).float() / 255
+    x = x * torch.exp2(ranges.gain * uniform(1, 1, 1) + ranges.tint * uniform(3, 1, 1))
+    middle = x.mean((1, 2, 3), keepdim=True)
+    x = (middle + (x - middle) * (1 + ranges.contrast * uniform(1, 1, 1))).clamp(0, 1)
     move = torch.zeros(count, 2, 3, device=images.device)
     scale = 1 + ranges.shift * uniform()
     move[:, 0, 0], move[:, 1, 1] = scale, scale
     move[:, :, 2] = ranges.shift * uniform(2)
-    grid = functional.affine_grid(move, [count, views * 3, height, width], align_corners=False)
-    flat = functional.grid_sample(flat, grid, padding_mode="border", align_corners=False)
-    soft = functional.avg_pool2d(functional.pad(flat, (1, 1, 1, 1), mode="replicate"), 3, 1)
-    flat = torch.where((uniform(1, 1, 1) * 0.5 + 0.5) < ranges.blur, soft, flat)
-    flat = flat * _kept(uniform, height, width, ranges.erase)
-    noise = torch.randn(flat.shape, generator=generator, device=images.device) * ranges.noise
-    flat = (flat + noise * (uniform(1, 1, 1) * 0.5 + 0.5)).clamp(0, 1)
-    return flat.reshape(count, views, 3, height, width).permute(0, 1, 3, 4, 2)
+    grid = functional.affine_grid(move, [count, 3, height, width], align_corners=False)
+    x = functional.grid_sample(x, grid, padding_mode="border", align_corners=False)
+    soft = functional.avg_pool2d(functional.pad(x, (1, 1, 1, 1), mode="replicate"), 3, 1)
+    x = torch.where((uniform(1, 1, 1) * 0.5 + 0.5) < ranges.blur, soft, x)
+    x = x * _kept(uniform, height, width, ranges.erase)
+    noise = torch.randn(x.shape, generator=generator, device=images.device) * ranges.noise
+    x = (x + noise * (uniform(1, 1, 1) * 0.5 + 0.5)).clamp(0, 1)
+    return x.permute(0, 2, 3, 1)
 
 
 def _kept(uniform: Callable[..., Tensor], height: int, width: int, share: float) -> Tensor:

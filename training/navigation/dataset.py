@@ -1,4 +1,4 @@
-"""Samples of the training: observations, goals and labels from the table of views and its images."""
+"""Samples of the training: observations, goals and labels from the tables of routes.py and the images."""
 
 from __future__ import annotations
 
@@ -17,22 +17,21 @@ MEAN, STD = (0.485, 0.456, 0.406), (0.229, 0.224, 0.225)  # of ImageNet
 
 @dataclass(frozen=True)
 class Sampling:
-    """context: images before the current one; far: share of goals beyond MAX_STEPS, up to `farthest` steps; negative:
-    share of goals that are elsewhere, at least `apart` [m] away; mixed: share of goals of another condition."""
+    """Shares of goals. crossing: any view that the anchor sees, instead of one on its path; far: on the path beyond
+    MAX_STEPS, up to `farthest` steps; negative: elsewhere, at least `apart` [m] away; mixed: of another condition."""
 
-    context: int = 3
-    far: float = 0.15
+    crossing: float = 0.6
+    far: float = 0.1
     farthest: int = 30
-    negative: float = 0.12
+    negative: float = 0.1
     apart: float = 3.0
-    mixed: float = 0.3
+    mixed: float = 0.4
 
 
 @dataclass(frozen=True)
 class Batch:
-    """observation: (n, context + 1, 64, 85, 3) uint8, oldest first; goal: (n, 64, 85, 3) uint8; dist: (n,) steps;
-    action: (n, 5, 4); positive: (n,) bool, false for goals elsewhere, whose action has no meaning; condition: (n,) of
-    the observation; goal_condition: (n,)."""
+    """observation, goal: (n, 64, 85, 3) uint8; dist: (n,) steps; action: (n, 5, 4); positive: (n,) bool, false for
+    goals elsewhere, whose action has no meaning; condition: (n,) of the observation; goal_condition: (n,)."""
 
     observation: Tensor
     goal: Tensor
@@ -41,6 +40,17 @@ class Batch:
     positive: Tensor
     condition: Tensor
     goal_condition: Tensor
+
+
+@dataclass(frozen=True)
+class _Aim:
+    """Anchors and their goals: condition, rows of the views, distance [steps], waypoints."""
+
+    condition: Tensor
+    anchor: Tensor
+    goal: Tensor
+    dist: Tensor
+    action: Tensor
 
 
 class Data:
@@ -74,70 +84,78 @@ class Data:
         def tensor(values: np.ndarray) -> Tensor:
             return torch.from_numpy(np.ascontiguousarray(values)).to(self.device)
 
-        place, route, drive = table["place"], table["route"].astype(np.int64), table["drive"]
-        same = np.concatenate([[False], (route[1:] == route[:-1]) & (drive[1:] == drive[:-1])])
-        index = np.arange(len(route))
-        self.before = tensor(np.where(same, index - 1, index))  # the view before, on the same drive
+        route = table["route"].astype(np.int64)
         first, count = np.zeros(route.max() + 1, np.int64), np.zeros(route.max() + 1, np.int64)
-        on_path = np.flatnonzero(drive == 0)
+        on_path = np.flatnonzero(table["drive"] == 0)
         first[route[on_path][::-1]] = on_path[::-1]  # of equal indices, the last assignment holds
         np.add.at(count, route[on_path], 1)
         self.first, self.count = tensor(first), tensor(count)  # views on the path of each route
-        self.place, self.route = tensor(place.astype(np.int64)), tensor(route)
+        self.place, self.route = tensor(table["place"].astype(np.int64)), tensor(route)
         self.along, self.position = tensor(table["along"]), tensor(table["pose"][:, :2])
         self.action = tensor(table["action"])
+        self.pair_anchor = tensor(table["pair_anchor"].astype(np.int64))
+        self.pair_goal = tensor(table["pair_goal"].astype(np.int64))
+        self.pair_dist, self.pair_action = tensor(table["pair_dist"]), tensor(table["pair_action"])
+        seen = (self.image[:, self.pair_anchor] >= 0) & (self.image[:, self.pair_goal] >= 0)
+        self.pairs = torch.nonzero(seen)  # (p, 2): condition, pair
 
     def sample(self, count: int, generator: torch.Generator, sampling: Sampling) -> Batch:
         """A random batch. The generator is of this device."""
 
-        def uniform() -> Tensor:
-            return torch.rand(count, generator=generator, device=self.device)
+        def is_drawn(share: float) -> Tensor:
+            return torch.rand(count, generator=generator, device=self.device) < share
 
-        pick = self.anchors[(uniform() * len(self.anchors)).long().clamp(max=len(self.anchors) - 1)]
-        condition, anchor = pick[:, 0], pick[:, 1]
-        goal, dist = self._goals(anchor, uniform(), uniform() < sampling.far, sampling)
-        other = (uniform() * len(self.conditions)).long().clamp(max=len(self.conditions) - 1)
-        change = (uniform() < sampling.mixed) & (self.image[other, goal] >= 0)
-        goal_condition = torch.where(change, other, condition)
-        stray = self.anchors[(uniform() * len(self.anchors)).long().clamp(max=len(self.anchors) - 1)]
-        gap = torch.linalg.vector_norm(self.position[stray[:, 1]] - self.position[anchor], dim=1)
-        elsewhere = (self.place[stray[:, 1]] != self.place[anchor]) | (gap > sampling.apart)
-        negative = (uniform() < sampling.negative) & elsewhere
-        goal = torch.where(negative, stray[:, 1], goal)
+        ahead, across = self._ahead(count, generator, sampling), self._across(count, generator)
+        aim = _chosen(is_drawn(sampling.crossing if len(self.pairs) else 0.0), across, ahead)
+        other = self._draw(len(self.conditions), count, generator)
+        change = is_drawn(sampling.mixed) & (self.image[other, aim.goal] >= 0)
+        goal_condition = torch.where(change, other, aim.condition)
+        stray = self.anchors[self._draw(len(self.anchors), count, generator)]
+        gap = torch.linalg.vector_norm(self.position[stray[:, 1]] - self.position[aim.anchor], dim=1)
+        elsewhere = (self.place[stray[:, 1]] != self.place[aim.anchor]) | (gap > sampling.apart)
+        negative = is_drawn(sampling.negative) & elsewhere
+        goal = torch.where(negative, stray[:, 1], aim.goal)
         goal_condition = torch.where(negative, stray[:, 0], goal_condition)
-        dist = torch.where(negative, torch.full_like(dist, float(MAX_STEPS)), dist)
-        seen = [anchor]
-        ratio = SPACING / self.spacing
-        jitter = uniform()
-        for steps in range(1, sampling.context + 1):
-            # Observations are a step apart, views two: round to one of the views about the place.
-            views = (steps * ratio + jitter - 0.5).round().long().clamp(min=0)
-            seen.append(self._earlier(anchor, views))
-        observation = torch.stack([self.images[self.image[condition, view]] for view in reversed(seen)], 1)
-        image = self.images[self.image[goal_condition, goal]]
-        return Batch(observation, image, dist, self.action[anchor], ~negative, condition, goal_condition)
+        dist = torch.where(negative, torch.full_like(aim.dist, float(MAX_STEPS)), aim.dist)
+        seen, sought = self.image[aim.condition, aim.anchor], self.image[goal_condition, goal]
+        return Batch(self.images[seen], self.images[sought], dist, aim.action, ~negative, aim.condition, goal_condition)
 
-    def _goals(self, anchor: Tensor, draw: Tensor, far: Tensor, sampling: Sampling) -> tuple[Tensor, Tensor]:
-        """Views on the anchors' paths, 0 … MAX_STEPS (far: … farthest) steps ahead, and their distances."""
+    def _draw(self, below: int, count: int, generator: torch.Generator) -> Tensor:
+        return (torch.rand(count, generator=generator, device=self.device) * below).long().clamp(max=max(below - 1, 0))
+
+    def _ahead(self, count: int, generator: torch.Generator, sampling: Sampling) -> _Aim:
+        """Views on the anchors' paths, 0 … MAX_STEPS (far: … farthest) steps ahead."""
+        pick = self.anchors[self._draw(len(self.anchors), count, generator)]
+        condition, anchor = pick[:, 0], pick[:, 1]
+        draw = torch.rand(count, generator=generator, device=self.device)
+        far = torch.rand(count, generator=generator, device=self.device) < sampling.far
         steps = torch.where(far, MAX_STEPS + draw * (sampling.farthest - MAX_STEPS), draw * MAX_STEPS)
         route = self.route[anchor]
         wanted = ((self.along[anchor] + steps * SPACING) / self.spacing).round().long()
         goal = self.first[route] + torch.minimum(wanted.clamp(min=0), self.count[route] - 1)
         dist = ((self.along[goal] - self.along[anchor]) / SPACING).clamp(0, MAX_STEPS)
-        return goal, dist
+        return _Aim(condition, anchor, goal, dist, self.action[anchor])
 
-    def _earlier(self, view: Tensor, count: Tensor) -> Tensor:
-        """The view `count` views before on the same drive; its first view where there are fewer."""
-        for step in range(int(count.max()) if len(count) else 0):
-            view = torch.where(count > step, self.before[view], view)
-        return view
+    def _across(self, count: int, generator: torch.Generator) -> _Aim:
+        """Pairs of views, of any drives."""
+        if not len(self.pairs):
+            none = torch.zeros(count, dtype=torch.long, device=self.device)
+            return _Aim(none, none, none, none.float(), self.action[none])
+        pick = self.pairs[self._draw(len(self.pairs), count, generator)]
+        condition, pair = pick[:, 0], pick[:, 1]
+        dist = self.pair_dist[pair].clamp(0, MAX_STEPS)
+        return _Aim(condition, self.pair_anchor[pair], self.pair_goal[pair], dist, self.pair_action[pair])
+
+
+def _chosen(first: Tensor, yes: _Aim, no: _Aim) -> _Aim:
+    one = [torch.where(first, getattr(yes, name), getattr(no, name)) for name in ("condition", "anchor", "goal", "dist")]
+    return _Aim(*one, torch.where(first[:, None, None], yes.action, no.action))
 
 
 def normalised(images: Tensor) -> Tensor:
-    """(n, k, 64, 85, 3) in 0 … 1 to the network's (n, 3 k, 64, 85)."""
+    """(n, 64, 85, 3) in 0 … 1 to the network's (n, 3, 64, 85)."""
     mean, std = (torch.tensor(values, device=images.device) for values in (MEAN, STD))
-    scaled = (images - mean) / std
-    return scaled.permute(0, 1, 4, 2, 3).flatten(1, 2)
+    return ((images - mean) / std).permute(0, 3, 1, 2)
 
 
 def split(names: Sequence[str], every: int = 6) -> tuple[list[int], list[int]]:

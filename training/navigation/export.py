@@ -22,8 +22,7 @@ def write(policy: Policy, folder: Path) -> dict[str, Any]:
     policy = policy.eval().to(memory_format=torch.contiguous_format)
     np.savez(folder / "weights.npz", **{name: value.numpy() for name, value in policy.state_dict().items()})
     generator = torch.Generator().manual_seed(0)
-    channels = 3 * (policy.size.context + 1)
-    example = tuple(torch.randn(1, count, 64, 85, generator=generator) for count in (channels, 3))
+    example = tuple(torch.randn(1, 3, 64, 85, generator=generator) for _ in range(2))
     file = folder / "policy.onnx"
     names = {"input_names": ["obs_img", "goal_img"], "output_names": ["dist", "action"]}
     try:

@@ -48,7 +48,7 @@ def validate(network: Network, data: Data, batches: int, size: int, seed: int = 
     rows: list[Tensor] = []
     for _ in range(batches):
         batch = data.sample(size, generator, Sampling())
-        observation, goal = normalised(batch.observation.float() / 255), normalised(batch.goal[:, None].float() / 255)
+        observation, goal = normalised(batch.observation.float() / 255), normalised(batch.goal.float() / 255)
         dist, action = network(observation, goal)
         _, astray = network(observation, goal.roll(1, 0))
         gap = _gap(action, batch.action)

@@ -10,93 +10,93 @@ from torch.nn import functional
 
 from .labels import MAX_STEPS, WAYPOINTS
 
+ROWS, COLUMNS = 8, 11  # of feature maps
+
 
 @dataclass(frozen=True)
 class Size:
-    """context: images before the current one; widths: channels of the stages, each at half the resolution of the one
-    before; blocks: per stage; features: of each encoder and of the fusion; groups: of the normalisation."""
+    """widths: channels of the encoder at 1/2, 1/4 and 1/8 of the resolution; features: of the head; groups: of the
+    normalisation, which makes no difference between training and one image at a time."""
 
-    context: int = 3
-    widths: tuple[int, ...] = (32, 64, 128, 256)
-    blocks: int = 2
+    widths: tuple[int, int, int] = (24, 48, 96)
     features: int = 256
     groups: int = 8
 
 
-class Block(nn.Module):
-    """Residual depthwise-separable convolution (Chollet 2017), expanded twofold as in Sandler et al. 2018."""
+def _layer(inputs: int, outputs: int, kernel: int, stride: int, groups: int) -> nn.Sequential:
+    convolution = nn.Conv2d(inputs, outputs, kernel, stride, kernel // 2, bias=False)
+    return nn.Sequential(convolution, nn.GroupNorm(groups, outputs), nn.SiLU())
 
-    def __init__(self, inputs: int, outputs: int, stride: int, groups: int) -> None:
+
+class Residual(nn.Module):
+    """Two convolutions of 3x3 around which the input is added (He et al. 2016)."""
+
+    def __init__(self, width: int, groups: int) -> None:
         super().__init__()
-        inner = 2 * inputs
         self.body = nn.Sequential(
-            nn.Conv2d(inputs, inner, 1, bias=False),
-            nn.GroupNorm(groups, inner),
-            nn.SiLU(inplace=True),
-            nn.Conv2d(inner, inner, 3, stride, 1, groups=inner, bias=False),
-            nn.GroupNorm(groups, inner),
-            nn.SiLU(inplace=True),
-            nn.Conv2d(inner, outputs, 1, bias=False),
-            nn.GroupNorm(groups, outputs),
+            _layer(width, width, 3, 1, groups), nn.Conv2d(width, width, 3, 1, 1, bias=False), nn.GroupNorm(groups, width)
         )
-        self.skips = stride == 1 and inputs == outputs
 
     def forward(self, image: Tensor) -> Tensor:
-        """(n, inputs, h, w) to (n, outputs, h / stride, w / stride)."""
-        out: Tensor = self.body(image)
-        return image + out if self.skips else out
-
-
-class Encoder(nn.Module):
-    """Images (n, channels, 64, 85) to features (n, features). The place of what it sees is kept: no global pooling."""
-
-    def __init__(self, channels: int, size: Size) -> None:
-        super().__init__()
-        layers: list[nn.Module] = [nn.Conv2d(channels, size.widths[0], 5, 2, 2, bias=False)]
-        layers += [nn.GroupNorm(size.groups, size.widths[0]), nn.SiLU(inplace=True)]
-        before = size.widths[0]
-        for stage, width in enumerate(size.widths):
-            for block in range(size.blocks):
-                layers.append(Block(before, width, 2 if block == 0 and stage > 0 else 1, size.groups))
-                before = width
-        layers += [nn.Conv2d(before, 32, 1), nn.SiLU(inplace=True), nn.Flatten()]
-        self.body = nn.Sequential(*layers)
-        self.out = nn.Linear(32 * 4 * 6, size.features)
-
-    def forward(self, image: Tensor) -> Tensor:
-        """Features before their activation."""
-        features: Tensor = self.out(self.body(image))
-        return features
+        """The same shape."""
+        return functional.silu(image + self.body(image))
 
 
 class Policy(nn.Module):
-    """obs_img (n, 3 (context + 1), 64, 85), the oldest first, and goal_img (n, 3, 64, 85), normalised as for ImageNet,
-    to dist (n, 1) [steps] and action (n, 5, 4): x, y in units of labels.SPACING, cos, sin, in the robot's frame.
+    """obs_img and goal_img (n, 3, 64, 85), normalised as for ImageNet, to dist (n, 1) [steps] and action (n, 5, 4): x, y
+    in units of labels.SPACING, cos, sin, in the robot's frame.
 
-    As in GNM, the goal's encoder also sees the observations, and waypoints are sums of the steps before them.
+    One encoder serves both images. Correlations of all features of one image with all of the other show where parts of
+    the goal image are in the current one, as in networks for optical flow (Dosovitskiy et al. 2015); the head turns them
+    and the current features into distance and waypoints. Waypoints are sums of steps, as in GNM.
     """
 
     def __init__(self, size: Size | None = None) -> None:
         super().__init__()
         size = size or Size()
-        self.size = size
-        channels = 3 * (size.context + 1)
-        self.observation = Encoder(channels, size)
-        self.goal = Encoder(channels + 3, size)
-        self.fusion = nn.Sequential(
-            nn.SiLU(), nn.Linear(2 * size.features, size.features), nn.SiLU(), nn.Linear(size.features, size.features)
+        first, second, third = size.widths
+        self.encoder = nn.Sequential(
+            _layer(3, first, 5, 2, size.groups),
+            _layer(first, second, 3, 2, size.groups),
+            Residual(second, size.groups),
+            _layer(second, third, 3, 2, size.groups),
+            Residual(third, size.groups),
+            Residual(third, size.groups),
         )
-        self.dist = nn.Sequential(nn.SiLU(), nn.Linear(size.features, 1))
-        self.action = nn.Sequential(nn.SiLU(), nn.Linear(size.features, 4 * WAYPOINTS))
+        self.key = nn.Conv2d(third, 64, 1)
+        self.sharpness = nn.Parameter(torch.tensor(2.5))
+        self.matches = _layer(ROWS * COLUMNS, 64, 1, 1, size.groups)
+        self.joined = nn.Sequential(
+            _layer(2 * third + 64 + 3, third, 3, 1, size.groups), Residual(third, size.groups), _layer(third, 48, 1, 1, size.groups)
+        )
+        self.head = nn.Sequential(
+            nn.Flatten(), nn.Linear(48 * ROWS * COLUMNS, size.features), nn.SiLU(), nn.Linear(size.features, size.features), nn.SiLU()
+        )
+        self.dist = nn.Linear(size.features, 1)
+        self.action = nn.Linear(size.features, 4 * WAYPOINTS)
+        y, x = torch.meshgrid(torch.linspace(-1, 1, ROWS), torch.linspace(-1, 1, COLUMNS), indexing="ij")
+        self.register_buffer("places", torch.stack([x.flatten(), y.flatten()], 1))  # (88, 2): x right, y down
 
     def forward(self, obs_img: Tensor, goal_img: Tensor) -> tuple[Tensor, Tensor]:
         """dist and action."""
-        seen, sought = self.observation(obs_img), self.goal(torch.cat([obs_img, goal_img], 1))
-        features = self.fusion(torch.cat([seen, sought], 1))
+        seen, sought = self.encoder(obs_img), self.encoder(goal_img)
+        features = self.head(self.joined(torch.cat([seen, sought, *self._correlated(seen, sought)], 1)))
         raw = self.action(features).reshape(-1, WAYPOINTS, 4).float()
         places = torch.cumsum(raw[:, :, :2], 1)
         headings = functional.normalize(raw[:, :, 2:], dim=2, eps=1e-6)
         return self.dist(features).float() * MAX_STEPS, torch.cat([places, headings], 2)
+
+    def _correlated(self, seen: Tensor, sought: Tensor) -> tuple[Tensor, Tensor]:
+        """Maps over the current image: features of the correlations (n, 64, 8, 11), and the displacement of the matching
+        part of the goal image with its certainty (n, 3, 8, 11)."""
+        here = functional.normalize(self.key(seen).flatten(2), dim=1, eps=1e-4)  # (n, 64, 88)
+        there = functional.normalize(self.key(sought).flatten(2), dim=1, eps=1e-4)
+        similar = torch.matmul(here.transpose(1, 2), there)  # (n, 88 here, 88 there)
+        share = torch.softmax(similar * torch.exp(self.sharpness), 2)
+        move = torch.matmul(share, self.places.to(share.dtype)) - self.places.to(share.dtype)
+        flow = torch.cat([move, share.amax(2, keepdim=True)], 2).transpose(1, 2).reshape(-1, 3, ROWS, COLUMNS)
+        maps = similar.transpose(1, 2).reshape(-1, ROWS * COLUMNS, ROWS, COLUMNS)
+        return self.matches(maps), flow
 
 
 def parameters_of(policy: nn.Module) -> int:

@@ -1,7 +1,7 @@
 """Writes the scenes and the table of views of the training: `./gloam python -m training.navigation.routes --out DIR`.
 
-DIR/scenes/PLACE_CONDITION.toml has one camera per view; DIR/routes.npz has the arrays of `Views`,
-DIR/places.json the names of the places.
+DIR/scenes/PLACE_CONDITION.toml has one camera per view; DIR/routes.npz has the arrays of `Views` and, with the prefix
+pair_, of `Pairs`; DIR/places.json has the names of the places.
 """
 
 from __future__ import annotations
@@ -10,8 +10,9 @@ import argparse
 import json
 import time
 from collections.abc import Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from pathlib import Path as File
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,10 +21,12 @@ import gloam
 from gloam.navigation.free_space import FreeSpace
 
 from .labels import Path, waypoints
+from .pairs import PairRule, Pairs, pairs_of
 from .paths import VIEW_SPACING, Deviation, deviating_drive, nominal_drive, plan
 from .scenes import CONDITIONS, Place, camera_poses, cameras_toml, place_toml, places
 
 Array = NDArray[np.float64]
+Table = TypeVar("Table", "Views", Pairs)
 RADIUS = 0.32  # of the free space around the trunk's centre [m]; the camera is 0.31 m ahead of it
 LENGTHS = (4.0, 12.0)  # of paths [m]
 
@@ -44,9 +47,10 @@ class Views:
         return len(self.place)
 
 
-def joined(parts: Sequence[Views]) -> Views:
-    """All rows, in order."""
-    return Views(*(np.concatenate([getattr(part, field.name) for part in parts]) for field in fields(Views)))
+def joined(parts: Sequence[Table]) -> Table:
+    """All rows of tables of one type, in order."""
+    kind = type(parts[0])
+    return kind(*(np.concatenate([getattr(part, field.name) for part in parts]) for field in fields(kind)))
 
 
 def route_views(path: Path, space: FreeSpace, rng: np.random.Generator, place: int, route: int) -> Views:
@@ -123,6 +127,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     scenes = options.out / "scenes"
     scenes.mkdir(parents=True, exist_ok=True)
     parts: list[Views] = []
+    pairs: list[Pairs] = []
     names: list[str] = []
     for place in places(options.houses, options.warehouses):
         begin = time.monotonic()
@@ -134,17 +139,26 @@ def main(arguments: Sequence[str] | None = None) -> None:
             print(f"{place.name}: skipped: {error}", flush=True)
             continue
         write_place(place, views, scenes, options.seed)
+        pairs.append(place_pairs(views, space, sum(map(len, parts)), options.seed))
         parts.append(views)
         names.append(place.name)
-        routes = len(np.unique(views.route))
-        print(f"{place.name}: {len(views)} views, {routes} routes, {time.monotonic() - begin:.1f} s", flush=True)
-        save(joined(parts), names, options.out / "routes.npz")
+        routes = f"{len(np.unique(views.route))} routes, {len(pairs[-1].anchor)} pairs"
+        print(f"{place.name}: {len(views)} views, {routes}, {time.monotonic() - begin:.1f} s", flush=True)
+        save(joined(parts), joined(pairs), names, options.out / "routes.npz")
         (options.out / "places.json").write_text(json.dumps(names))
 
 
-def save(views: Views, names: Sequence[str], file: File) -> None:
-    """Writes the table, with the places' names and the spacing of the views."""
+def place_pairs(views: Views, space: FreeSpace, first: int, seed: int) -> Pairs:
+    """Pairs of the views of a place, whose first row in the table of all places is `first`."""
+    rng = np.random.default_rng((seed, first))
+    pairs = pairs_of(views.pose.astype(np.float64), space, rng, PairRule())
+    return replace(pairs, anchor=pairs.anchor + np.int32(first), goal=pairs.goal + np.int32(first))
+
+
+def save(views: Views, pairs: Pairs, names: Sequence[str], file: File) -> None:
+    """Writes the tables, with the places' names and the spacing of the views."""
     table = {field.name: getattr(views, field.name) for field in fields(Views)}
+    table |= {f"pair_{field.name}": getattr(pairs, field.name) for field in fields(Pairs)}
     np.savez_compressed(file, **table, names=np.array(names), view_spacing=np.float32(VIEW_SPACING))
 
 

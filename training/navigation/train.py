@@ -59,7 +59,7 @@ class Trainer:
         batch = mirrored(batch, mirror)
         ranges = Augmentation()
         observation = normalised(changed(batch.observation, self.generator, ranges))
-        return batch, observation, normalised(changed(batch.goal[:, None], self.generator, ranges))
+        return batch, observation, normalised(changed(batch.goal, self.generator, ranges))
 
     def step(self, progress: float) -> Tensor:
         """One step of the optimiser at a share of the training; its loss."""
