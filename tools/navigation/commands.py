@@ -42,6 +42,11 @@ def _add_navigate(commands: argparse._SubParsersAction[argparse.ArgumentParser])
     command.add_argument("--log", help="file of a log to record (MCAP)")
     command.add_argument("--topics", default="/clock,/tf*", help="topics of the log beside states and inputs; default: %(default)s")
     command.add_argument("--overwrite", action="store_true", help="replace an existing log")
+    command.add_argument(
+        "--allow-programs",
+        action="store_true",
+        help="let the scene's planner start a program, load a library or connect to another machine",
+    )
     command.set_defaults(action=_navigate)
 
 
@@ -53,9 +58,9 @@ def _navigate(given: argparse.Namespace) -> int:
         until = given.duration if given.duration is not None else sim.scene.duration
         if given.log:
             with sim.record(given.log, given.topics.split(","), overwrite=given.overwrite):
-                driver = drive(sim, until)
+                driver = drive(sim, until, given.allow_programs)
         else:
-            driver = drive(sim, until)
+            driver = drive(sim, until, given.allow_programs)
         stats = driver.stats
         robot = sim.robots[driver.rig.robot]
         print(f"time {sim.time:.2f} s, position {robot.pose.p[0]:.2f} {robot.pose.p[1]:.2f} m, arrived {str(driver.has_arrived).lower()}")

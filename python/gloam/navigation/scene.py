@@ -12,10 +12,17 @@ from .planner import Planner, Task, make_planner
 from .topological_map import TopologicalMap
 
 
-def planner_of(scene: gloam.Scene) -> Planner:
-    """The planner of a scene's [planner]. Errors: UsageError without one; as make_planner()."""
+def planner_of(scene: gloam.Scene, allow_programs: bool = False) -> Planner:
+    """The planner of a scene's [planner]. allow_programs: whether the scene may start a program, load a library and
+    connect to another machine. Errors: UsageError without a planner, and for one that is not allowed; as make_planner().
+    """
     table = _table(scene)
-    options: dict[str, Any] = {key: table[key] for key in ("weights", "command", "address") if table.get(key)}
+    if not allow_programs and (deed := _deed(table)):
+        raise gloam.UsageError(
+            f"[planner] of scene '{scene.name}' {deed}, which is not allowed",
+            hint="if you trust the scene: --allow-programs, in Python allow_programs=True",
+        )
+    options: dict[str, Any] = {key: table[key] for key in ("weights", "library", "command", "address") if table.get(key)}
     planner = make_planner(table["type"], **options)
     if table.get("rate"):
         planner.rate = float(table["rate"])
@@ -57,15 +64,34 @@ def rig_of(scene: gloam.Scene, world: gloam.World) -> Rig:
     return Rig(robot, camera, lidar)
 
 
-def drive(sim: gloam.Simulation, until: float) -> Driver:
+def drive(sim: gloam.Simulation, until: float, allow_programs: bool = False) -> Driver:
     """Runs a simulation until the time [s] with the planner of its scene. Returns the closed driver, with its
     statistics. Errors: as planner_of(), task_of() and Driver.run()."""
-    driver = Driver(sim, rig_of(sim.scene, sim.world), planner_of(sim.scene))
+    rig = rig_of(sim.scene, sim.world)
+    planner = planner_of(sim.scene, allow_programs)
+    try:
+        driver = Driver(sim, rig, planner)
+    except gloam.Error:
+        planner.close()
+        raise
     try:
         driver.run(task_of(sim.scene, sim.world), until)
     finally:
         driver.close()
     return driver
+
+
+def _deed(table: dict[str, Any]) -> str:
+    """What a planner does to the user's machine beyond reading files and talking to processes that run on it; "" = nothing."""
+    if table.get("library"):
+        return f"loads the library {table['library']}"
+    if table.get("command"):
+        return f"starts the program '{table['command']}'"
+    address = str(table.get("address", ""))
+    host = address.removeprefix("tcp://").rpartition(":")[0]
+    if address.startswith("tcp://") and host not in ("127.0.0.1", "localhost", "[::1]"):
+        return f"connects to {address}"
+    return ""
 
 
 def _tables(scene: gloam.Scene) -> dict[str, Any]:

@@ -1,5 +1,5 @@
 """Planners. Importing this package registers them."""
 
-from . import external, geometric, goal_image, nomad, simple
+from . import external, geometric, goal_image, library, nomad, simple
 
-__all__ = ["external", "geometric", "goal_image", "nomad", "simple"]
+__all__ = ["external", "geometric", "goal_image", "library", "nomad", "simple"]
