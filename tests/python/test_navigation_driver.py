@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import threading
 from collections.abc import Iterator
 
 import gloam
@@ -146,33 +145,3 @@ def test_scenes_with_wrong_planners_are_rejected() -> None:
         arena(planner={"type": "route", "command": "x"})
     with pytest.raises(gloam.UsageError, match="has no \\[planner\\]"):
         planner_of(arena())
-
-
-def test_a_planner_in_another_process(sim: gloam.Simulation) -> None:
-    pytest.importorskip("zmq")
-    from gloam.navigation.planners.external import ExternalPlanner, serve
-
-    address, alive = "tcp://127.0.0.1:7811", threading.Event()
-    alive.set()
-    thread = threading.Thread(target=serve, args=(make_planner("straight"), address, alive.is_set), daemon=True)
-    thread.start()
-    driver = Driver(sim, Rig("go"), ExternalPlanner(address, needs=()))
-    driver.run(Task("go", goal=GOAL, radius=0.4), 12.0, lambda s: driver.has_arrived)
-    assert driver.has_arrived and driver.stats.invalid == 0
-    with pytest.raises(gloam.UsageError, match="rejects the task"):
-        driver.planner.reset(Task("go"))
-    alive.clear()
-    thread.join()
-    driver.close()
-
-
-def test_a_planner_that_does_not_answer_is_given_up(sim: gloam.Simulation) -> None:
-    pytest.importorskip("zmq")
-    from gloam.navigation.planners.external import ExternalPlanner
-
-    planner = ExternalPlanner("tcp://127.0.0.1:7812", needs=(), timeout=0.2)
-    with pytest.raises(TimeoutError, match="has not answered"):
-        planner.reset(Task("go"))
-    planner.close()
-    with pytest.raises(gloam.UsageError, match="must begin with"):
-        ExternalPlanner("http://127.0.0.1")

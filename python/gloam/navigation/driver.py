@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import math
+import operator
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import Any, cast
+from typing import Any
 
 import numpy as np
 
@@ -16,6 +17,7 @@ from .follower import WaypointFollower
 from .planner import Answer, Arrived, Observation, Planner, Task, Velocity, Waypoints
 
 _STOP = Velocity()
+_LONGEST_ERROR = 300  # characters
 
 
 @dataclass(frozen=True)
@@ -55,9 +57,9 @@ class Driver:
         self._sim = sim
         self._last: dict[str, Any] = {}
         self._robot = sim.robots[rig.robot]
-        self._period = 1.0 / planner.rate
-        if not (math.isfinite(self._period) and self._period > 0 and 0 <= planner.latency < math.inf):
+        if not (0 < planner.rate < math.inf and 0 <= planner.latency < math.inf):
             raise gloam.UsageError(f"a planner needs a rate above 0 and a latency of at least 0 s, got {planner.rate} Hz and {planner.latency} s")
+        self._period = 1.0 / planner.rate
         self._camera = self._open_camera() if planner.needs & {"image", "depth"} else None
         self._lidar = self._open_lidar() if "scan" in planner.needs else None
 
@@ -145,7 +147,7 @@ class Driver:
             answer = _checked(self.planner.plan(observation))
         except Exception as error:  # any planner, by anybody
             self.stats.invalid += 1
-            self.stats.error = self.stats.error or f"{type(error).__name__}: {error}"
+            self.stats.error = self.stats.error or _described(error)
             answer = None
         seconds = time.perf_counter() - start
         self.stats.wall += seconds
@@ -172,16 +174,29 @@ class Driver:
 
 
 def _checked(answer: Any) -> Answer:
+    """The answer with its numbers as float64 and int. Errors: TypeError, ValueError or OverflowError if it is none."""
     if isinstance(answer, Arrived):
         return answer
     if isinstance(answer, Velocity):
         values = np.array([answer.vx, answer.vy, answer.yaw_rate], dtype=np.float64)
+        if values.shape != (3,):
+            raise ValueError(f"a velocity must be three numbers, got {values.shape}")
+        checked: Answer = Velocity(*values.tolist())
     elif isinstance(answer, Waypoints):
-        values = np.asarray(answer.points, dtype=np.float64)
-        if values.ndim != 2 or values.shape[1] not in (2, 4) or not 0 <= answer.chosen < len(values):
-            raise ValueError(f"waypoints must be (n, 2) or (n, 4) and contain the chosen one, got {values.shape} and {answer.chosen}")
+        values = np.array(answer.points, dtype=np.float64)
+        chosen = operator.index(answer.chosen)
+        if values.ndim != 2 or values.shape[1] not in (2, 4) or not 0 <= chosen < len(values):
+            raise ValueError(f"waypoints must be (n, 2) or (n, 4) and contain the chosen one, got {values.shape} and {chosen}")
+        checked = Waypoints(values, chosen)
     else:
         raise TypeError(f"a planner answers with a Velocity, Waypoints or Arrived, got {type(answer).__name__}")
     if not np.isfinite(values).all():
         raise ValueError("the answer is not finite")
-    return cast("Answer", answer)
+    return checked
+
+
+def _described(error: Exception) -> str:
+    """One short line for a person: the text may come from another process."""
+    text = f"{type(error).__name__}: {error}"
+    text = "".join(c if c.isprintable() else repr(c)[1:-1] for c in text[:_LONGEST_ERROR])
+    return text[:_LONGEST_ERROR]
