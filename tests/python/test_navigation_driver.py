@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from pathlib import Path
 
 import gloam
 import numpy as np
@@ -134,6 +135,19 @@ def test_the_scene_selects_a_planner() -> None:
     assert task.goal == GOAL and task.top_speed == 0.3 and task.radius == 0.4
     with gloam.Simulation(world) as sim:
         assert drive(sim, 12.0).has_arrived
+
+
+def test_files_of_a_planner_are_found_beside_the_scene(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "scene").mkdir()
+    (tmp_path / "scene" / "own.onnx").touch()
+    (tmp_path / "scene" / "box.xml").write_text('<mujoco><worldbody><body><geom size="0.1"/></body></worldbody></mujoco>')
+    (tmp_path / "scene" / "scene.toml").write_text(
+        '[[robot]]\nname = "box"\nfile = "box.xml"\n[planner]\ntype = "gnm"\nweights = "own.onnx"\n'
+    )
+    given = []
+    monkeypatch.setattr("gloam.navigation.scene.make_planner", lambda name, **options: given.append(options) or Scripted([]))
+    planner_of(gloam.Scene(tmp_path / "scene" / "scene.toml"))
+    assert given == [{"weights": tmp_path / "scene" / "own.onnx"}]
 
 
 def test_scenes_with_wrong_planners_are_rejected() -> None:

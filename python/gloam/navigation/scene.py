@@ -22,7 +22,8 @@ def planner_of(scene: gloam.Scene, allow_programs: bool = False) -> Planner:
             f"[planner] of scene '{scene.name}' {deed}, which is not allowed",
             hint="if you trust the scene: --allow-programs, in Python allow_programs=True",
         )
-    options: dict[str, Any] = {key: table[key] for key in ("weights", "library", "command", "address") if table.get(key)}
+    options: dict[str, Any] = {key: table[key] for key in ("command", "address") if table.get(key)}
+    options |= {key: _resolved(scene, table[key]) for key in ("weights", "library") if table.get(key)}
     planner = make_planner(table["type"], **options)
     if table.get("rate"):
         planner.rate = float(table["rate"])
