@@ -2,7 +2,7 @@
 
     python3 tests/python/env.py
 
-makes it in the folder of the tests' data (about 300 MB, once) and prints the interpreter.
+makes it in the folder of the tests' data (about 1.3 GB, once) and prints the interpreter.
 """
 
 from __future__ import annotations
@@ -32,6 +32,13 @@ def pip(python: Path, *arguments: str | Path) -> None:
         raise RuntimeError(f"pip: {(result.stdout.strip().splitlines() or ['failed'])[-1]}")
 
 
+def contents(requirements: Path) -> bytes:
+    """Bytes of a list and of the lists that it includes."""
+    data = requirements.read_bytes()
+    included = [requirements.parent / line.split()[1] for line in data.decode().splitlines() if line.startswith("-r ")]
+    return data + b"".join(map(contents, included))
+
+
 def python_env(requirements: Path = REQUIREMENTS, base: str | None = None) -> Path:
     """An interpreter with the packages of a list with hashes; kept until the list changes.
 
@@ -42,7 +49,7 @@ def python_env(requirements: Path = REQUIREMENTS, base: str | None = None) -> Pa
     version = subprocess.run(
         [base, "-c", "import sys; print(sys.version)"], capture_output=True, text=True, check=True
     ).stdout
-    wanted = hashlib.sha256(requirements.read_bytes() + (base + version).encode()).hexdigest()[:8]
+    wanted = hashlib.sha256(contents(requirements) + (base + version).encode()).hexdigest()[:8]
     folder = fetch_data.default_folder() / f"python-{requirements.stem}-{wanted}"
     folder.mkdir(parents=True, exist_ok=True)
     python = folder / "venv" / "bin" / "python"
