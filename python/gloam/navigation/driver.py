@@ -16,6 +16,7 @@ import gloam
 from .follower import WaypointFollower
 from .planner import Answer, Arrived, Observation, Planner, Task, Velocity, Waypoints
 
+WATCH_PERIOD = 0.05  # between two calls of a run's watch [s]
 _STOP = Velocity()
 _LONGEST_ERROR = 300  # characters
 
@@ -78,7 +79,8 @@ class Driver:
         return self._sim.lidars[self.rig.lidar].open()
 
     def run(self, task: Task, until: float, watch: Callable[[gloam.Simulation], bool] | None = None) -> None:
-        """Drives until the time [s], or until watch(sim), called every 50 ms, returns True.
+        """Drives until the time [s], or until watch(sim) returns True, which is called every 50 ms after the start,
+        whatever the planner's rate: measurements of planners with different rates can be compared.
 
         Errors: UsageError if the planner rejects the task. Exceptions of plan() are counted (stats).
         """
@@ -87,6 +89,7 @@ class Driver:
         self.stats, self.has_arrived = PlannerStats(), False
         waiting: list[tuple[float, Velocity]] = []
         next_plan, valid_until = self._sim.time, math.inf
+        begin, watched = self._sim.time, 0
         while self._sim.time < until - 1e-9:
             if not self.has_arrived and self._sim.time >= next_plan - 1e-9:
                 command = self._command_of(self._ask(self._observe()), follower)
@@ -99,10 +102,13 @@ class Driver:
             if self._sim.time > valid_until:
                 self._send(_STOP)
                 valid_until = math.inf
-            events = [until, self._sim.time + 0.05, *([next_plan] if not self.has_arrived else []), *(t for t, _ in waiting[:1])]
+            next_watch = begin + (watched + 1) * WATCH_PERIOD
+            events = [until, next_watch, *([next_plan] if not self.has_arrived else []), *(t for t, _ in waiting[:1])]
             self._sim.run_until(min(event for event in events if event > self._sim.time + 1e-9))
-            if watch is not None and watch(self._sim):
-                break
+            if self._sim.time >= next_watch - 1e-9:
+                watched += 1
+                if watch is not None and watch(self._sim):
+                    break
         self._send(_STOP)
 
     def _observe(self) -> Observation:

@@ -6,6 +6,7 @@ import json
 import math
 import resource
 import time
+from collections import Counter
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -24,6 +25,7 @@ LOG_TOPICS = ("/clock", "/tf*")
 _STAND = 0.3  # the quadruped's height at the start [m]
 _STUCK_TIME, _STUCK_REACH = 15.0, 0.25  # an episode ends when the robot has stayed within so many metres [s], [m]
 _LOW = 0.05  # contacts below are steps on rugs and sills [m]
+_TRACK = 10  # instants of a watch between two places of the track
 _FORGET = 0.5  # a body counts again after so long without contact [s], as in docs/metrics.md
 
 
@@ -56,7 +58,7 @@ class Touched:
     """Counts collisions by object: a body counts once, and again after half a second without contact."""
 
     def __init__(self) -> None:
-        self.by_object: dict[str, int] = {}
+        self.places: list[tuple[float, float, float, str]] = []  # of collisions: time [s], x, y [m], object
         self.last: dict[str, float] = {}
 
     def sample(self, sim: gloam.Simulation) -> None:
@@ -67,14 +69,21 @@ class Touched:
             is_ground = abs(float(np.asarray(contact["normal"])[2])) > math.sqrt(0.5)
             if own[0] == own[1] or is_ground or float(np.asarray(contact["position"])[2]) < _LOW or float(np.linalg.norm(contact["force"])) <= 0:
                 continue
-            thing = _object_of(names[1] if own[0] else names[0])
-            if sim.time - self.last.get(thing, -math.inf) > _FORGET:
-                self.by_object[thing] = self.by_object.get(thing, 0) + 1
-            self.last[thing] = sim.time
+            other = names[1] if own[0] else names[0]
+            body = other.rpartition("/")[0] or other
+            if sim.time - self.last.get(body, -math.inf) > _FORGET:
+                x, y, _ = (round(float(v), 3) for v in np.asarray(contact["position"]))
+                self.places.append((round(sim.time, 3), x, y, _object_of(other)))
+            self.last[body] = sim.time
+
+    @property
+    def by_object(self) -> dict[str, int]:
+        """Collisions with each kind of object."""
+        return dict(Counter(thing for *_, thing in self.places))
 
     def total(self) -> int:
         """All collisions."""
-        return sum(self.by_object.values())
+        return len(self.places)
 
     def is_touching(self, now: float) -> bool:
         """Whether anything was touched within the last five seconds."""
@@ -112,9 +121,16 @@ class Watch:
             self.outcome = "collided" if self.touched.is_touching(sim.time) else "stuck"
         return self.outcome != ""
 
+    def track(self) -> list[tuple[float, float, float]]:
+        """Time [s] and place [m] of the robot twice per second, and at the end."""
+        kept = self.places[::_TRACK]
+        if self.places and kept[-1] is not self.places[-1]:
+            kept.append(self.places[-1])
+        return [(round(time, 3), round(x, 3), round(y, 3)) for time, (x, y) in kept]
+
     def _stays(self, now: float, here: Point) -> bool:
         recent = [place for then, place in self.places if then > now - _STUCK_TIME]
-        return now > _STUCK_TIME and max(math.dist(place, here) for place in recent) < _STUCK_REACH
+        return now - self.places[0][0] >= _STUCK_TIME and max(math.dist(place, here) for place in recent) < _STUCK_REACH
 
 
 def run_episode(spec: EpisodeSpec, pair: Pair, folder: Path, maps: Path) -> dict[str, Any]:
@@ -135,7 +151,6 @@ def run_episode(spec: EpisodeSpec, pair: Pair, folder: Path, maps: Path) -> dict
         "wall_seconds": time.perf_counter() - begin,
         "cpu_seconds": _cpu_seconds() - cpu,
         "log": "run.mcap" if (folder / "run.mcap").is_file() else None,
-        "video": None,
     }
     (folder / "episode.json").write_text(json.dumps(result, indent=1, sort_keys=True) + "\n", encoding="utf-8")
     return result
@@ -170,13 +185,16 @@ def _walk(sim: gloam.Simulation, driver: Driver, task: Task, pair: Pair, limit: 
 def _measured(sim: gloam.Simulation, driver: Driver, watch: Watch) -> dict[str, Any]:
     end, here = watch.places[-1] if watch.places else (sim.time, watch.goal)
     left = math.dist(here, watch.goal)
-    outcome = watch.outcome or ("lost" if driver.has_arrived else "timed_out")
+    outcome = watch.outcome or "timed_out"
+    if driver.has_arrived and outcome in ("stuck", "collided", "timed_out"):  # it rests because the planner stopped it
+        outcome = "lost"
     stats = driver.stats
     return {
         "outcome": outcome, "success": outcome == "success", "time": end - 1.0, "path_length": watch.length,
         "final_distance": left, "collisions": watch.touched.total(), "collisions_by_object": watch.touched.by_object,
         "visibility_mean": None, "visibility_min": None, "plans": stats.plans, "late": stats.late,
         "invalid": stats.invalid, "message": stats.error, "hash": f"{sim.hash:#018x}",
+        "track": watch.track(), "touches": watch.touched.places,
     }  # fmt: skip
 
 
@@ -184,7 +202,7 @@ def _failed(message: str, distance: float) -> dict[str, Any]:
     return {
         "outcome": "error", "success": False, "time": 0.0, "path_length": 0.0, "final_distance": distance,
         "collisions": 0, "collisions_by_object": {}, "visibility_mean": None, "visibility_min": None, "plans": 0,
-        "late": 0, "invalid": 0, "message": message, "hash": "",
+        "late": 0, "invalid": 0, "message": message, "hash": "", "track": [], "touches": [],
     }  # fmt: skip
 
 
