@@ -39,7 +39,7 @@ def episode(planner: str, scene: str, level: str, number: int, **changes: Any) -
         "outcome": "success", "success": True, "collisions": 0, "collisions_by_object": {}, "time": 20.0,
         "path_length": 7.5, "final_distance": 0.4, "visibility_mean": 30.0, "visibility_min": 25.0, "plans": 80,
         "late": 0, "invalid": 0, "wall_seconds": 40.0, "cpu_seconds": 70.0, "tier": "interactive", "log": None,
-        "video": None, "hash": "0x1", "message": "",
+        "hash": "0x1", "message": "", "track": [], "touches": [],
     } | changes  # fmt: skip
 
 
@@ -60,9 +60,7 @@ def write_folder(folder: Path, missing: int = 0, **changes: Any) -> dict[str, An
         for number in range(request["episodes"] - (missing if cell == cells[-1] else 0)):
             values = _draw(draw, cell, number)
             path = write_episode(folder, values)
-            for name in (values["video"], values["log"]):
-                if name:
-                    (path.parent / name).write_bytes(b"")
+            (path.parent / values["log"]).write_bytes(b"")
     return request
 
 
@@ -85,7 +83,7 @@ def _draw(draw: random.Random, cell: tuple[str, str, str], number: int) -> dict[
         time=path / 0.3 if success else draw.uniform(5, 120),
         final_distance=draw.uniform(0.1, 0.5) if success else draw.uniform(1, shortest),
         visibility_mean=sight, visibility_min=sight * 0.6, plans=plans, late=draw.randrange(3), invalid=int(draw.random() < 0.05),
-        wall_seconds=draw.uniform(20, 60), cpu_seconds=draw.uniform(40, 110), log="run.mcap", video="front.mp4",
+        wall_seconds=draw.uniform(20, 60), cpu_seconds=draw.uniform(40, 110), log="run.mcap",
         message="the planner's process ended with status 1" if failure == "error" and not success else "",
     )  # fmt: skip
 

@@ -1,38 +1,42 @@
-"""Recomputes the figures of a navigation benchmark from its raw episode files, independently of gloam.navigation.benchmark.
+"""Recomputes the figures of a navigation benchmark from its episodes, independently of gloam.navigation.
 
     python3 navigation_recompute.py FOLDER
+    ./gloam python tests/python/navigation_recompute.py FOLDER --logs
 
-compares them with FOLDER/cells.csv and FOLDER/paired_tests.csv and ends with status 1 if they differ. It shares no code
-with the package and needs only json, csv and math, so that an error in one of the two shows as a difference.
+compares them with FOLDER/cells.csv, FOLDER/paired_tests.csv and the page, and ends with status 1 if they differ. It shares
+no code with the package and needs only Python's library, so that an error in one of the two shows as a difference. With
+--logs, the episodes are measured again from their logs (navigation_replay.py), otherwise read from episode.json.
 """
 
 import csv
 import json
 import math
+import re
+from html.parser import HTMLParser
+from pathlib import Path
 
+DIGITS = {"time": 1, "wall": 1, "cpu": 1}  # that the page prints; 2 of all other figures
 DRAWS = 2000  # bootstrap resamples: fewer than the package's, hence the wide tolerance of intervals
 
 
-def cells(folder):
-    """{(planner, scene, level): {metric: value or (value, low, high)}} from the raw files."""
+def cells(folder, read=lambda values, log: values):
+    """{(planner, scene, level): {metric: value or (value, low, high)}} from the raw files. read(values, log): values of an
+    episode from those of its episode.json and its log."""
     with open(f"{folder}/request.json", encoding="utf-8") as file:
         request = json.load(file)
     episodes = {}
     for planner in request["planners"]:
         for scene in request["scenes"]:
             for level in request["levels"]:
-                episodes[planner, scene, level] = _episodes(folder, planner, scene, level, request["episodes"])
+                episodes[planner, scene, level] = _episodes(f"{folder}/episodes/{planner}/{scene}/{level}", request["episodes"], read)
     return request, episodes, {name: _cell(group) for name, group in episodes.items()}
 
 
-def _episodes(folder, planner, scene, level, count):
+def _episodes(folder, count, read):
     found = {}
-    for number in range(count):
-        try:
-            with open(f"{folder}/episodes/{planner}/{scene}/{level}/{number:04d}/episode.json", encoding="utf-8") as file:
-                found[number] = json.load(file)
-        except FileNotFoundError:
-            pass
+    for home in (Path(folder) / f"{number:04d}" for number in range(count)):
+        if (home / "episode.json").is_file():
+            found[int(home.name)] = read(json.loads((home / "episode.json").read_text(encoding="utf-8")), home / "run.mcap")
     return found
 
 
@@ -225,6 +229,52 @@ def _compare_tests(folder, tests):
     return wrong + [f"paired_tests.csv lacks {name}" for name in tests]
 
 
+class Page(HTMLParser):
+    """Numbers of cells by (cell, metric), addresses, and tags of a report."""
+
+    def __init__(self, text):
+        super().__init__()
+        self.figures, self.addresses, self.tags = {}, [], set()
+        self._cell = None
+        self.feed(text)
+
+    def handle_starttag(self, tag, attributes):
+        values = dict(attributes)
+        self.tags.add(tag)
+        self.addresses += [value for name, value in attributes if name in ("href", "src", "poster") and value]
+        if tag == "td":
+            self._cell = (values["data-cell"], values["data-metric"]) if "data-cell" in values else None
+
+    def handle_endtag(self, tag):
+        if tag == "td":
+            self._cell = None
+
+    def handle_data(self, data):
+        if self._cell:
+            self.figures[self._cell] = self.figures.get(self._cell, "") + data + " "
+
+
+def page_differences(text, figures):
+    """Sentences about figures of the page that differ from the recomputed ones, or are missing."""
+    printed, wrong = Page(text).figures, []
+    for cell, values in figures.items():
+        for metric in ("success", "sc", "spl", "collisions", "time", "distance", "wall", "cpu"):
+            if (shown := printed.get(("/".join(cell), metric))) is None:
+                if values["finished"] or metric not in ("wall", "cpu"):
+                    wrong.append(f"the page lacks {metric} of {cell}")
+                continue
+            numbers = [float(number.replace("−", "-")) for number in re.findall(r"−?\d+\.\d+", shown)]
+            triple = values[metric] if isinstance(values[metric], tuple) else (values[metric],)
+            exact = triple if metric == "success" else triple[:1]  # bootstrap intervals are compared in cells.csv
+            half = 0.5 * 10 ** -DIGITS.get(metric, 2) + 1e-9
+            known = [number for number in exact if number is not None]
+            if len(numbers) < len(known) or any(abs(a - b) > half for a, b in zip(numbers, known)):
+                wrong.append(f"the page has {shown.strip()} as {metric} of {cell}, {exact} recomputed")
+            if not known and numbers:
+                wrong.append(f"the page has {shown.strip()} as {metric} of {cell}, which has none")
+    return wrong
+
+
 def near(text, number, tolerance):
     if text == "" or number is None:
         return text == "" and number is None
@@ -232,7 +282,13 @@ def near(text, number, tolerance):
 
 
 def main(arguments):
-    wrong = differences(arguments[1])
+    read = {}
+    if "--logs" in arguments:
+        from navigation_replay import measured
+
+        read = {"read": measured}
+    computed = cells(arguments[1], **read)
+    wrong = differences(arguments[1], computed) + page_differences(Path(arguments[1], "report.html").read_text(), computed[2])
     print("\n".join(wrong) or "all figures agree")
     return 1 if wrong else 0
 

@@ -10,13 +10,13 @@ from pathlib import Path
 import gloam
 import numpy as np
 import pytest
+from gloam.navigation import Arrived, Observation, Planner, Task, Velocity, register_planner
 from gloam.navigation.benchmark.episode import EpisodeSpec, Touched, Watch, run_episode
 from gloam.navigation.benchmark.places import LEVELS, ROBOT, Course, Pair, scene_of, smoothed
 from gloam.navigation.benchmark.runner import Request, run
 from gloam.navigation.grid import Grid, length_of, point_ahead
 from gloam.navigation.window import DynamicWindow, WindowOptions
-
-pytest.importorskip("openvino")  # of the walking policy
+from navigation_replay import measured
 
 
 @pytest.fixture(scope="module")
@@ -71,14 +71,57 @@ def test_smoothing_keeps_the_ends() -> None:
     assert smoothed(corner)[0] == (0.0, 0.0) and smoothed(corner)[-1] == (1.0, 1.0)
 
 
-def test_an_episode_verifies_and_repeats(course: Course, tmp_path: Path) -> None:
-    spec = EpisodeSpec("route", "house", "none", 1)
+def test_an_episode_repeats_and_is_measured_again_from_its_log(course: Course, tmp_path: Path) -> None:
+    spec = EpisodeSpec("straight", "house", "none", 0)
     pair = course.pair(spec.pair_seed)
     results = [run_episode(spec, pair, tmp_path / str(k), tmp_path / "maps") for k in range(2)]
-    assert results[0]["outcome"] == "success" and results[0]["final_distance"] < 1.0
+    assert results[0]["outcome"] == "collided" and results[0]["collisions"] > 0, "the way is blocked"
     assert results[0]["hash"] == results[1]["hash"]
-    assert gloam.replay(tmp_path / "0" / "run.mcap").verify().is_equal
-    assert json.loads((tmp_path / "0" / "episode.json").read_text())["hash"] == results[0]["hash"]
+    log = tmp_path / "0" / "run.mcap"
+    read = json.loads((tmp_path / "0" / "episode.json").read_text())
+    again = measured(read, log)
+    for name in ("outcome", "success", "collisions", "collisions_by_object"):
+        assert again[name] == read[name], name
+    for name in ("time", "path_length", "final_distance"):
+        assert again[name] == pytest.approx(read[name], abs=1e-9), name
+    assert sum(read["collisions_by_object"].values()) == len(read["touches"]) == read["collisions"]
+    assert read["track"][-1][0] == pytest.approx(1.0 + read["time"]) and len(read["track"]) == pytest.approx(2 * read["time"], abs=2)
+    with pytest.raises(AssertionError, match="another state"):
+        measured(read | {"hash": "0x0"}, log)
+    with pytest.raises(AssertionError, match="begins elsewhere"):
+        measured(read | {"start": [0.0, 0.0, 0.0]}, log)
+
+
+def test_a_success_has_a_log_that_verifies(course: Course, tmp_path: Path) -> None:
+    spec = EpisodeSpec("route", "house", "none", 1)
+    result = run_episode(spec, course.pair(spec.pair_seed), tmp_path / "e", tmp_path / "maps")
+    assert result["outcome"] == "success" and result["final_distance"] < 1.0
+    assert gloam.replay(tmp_path / "e" / "run.mcap").verify().is_equal
+
+
+class _Tired(Planner):
+    """Considers itself to be at the goal from the beginning."""
+
+    uses_map = False
+
+    def reset(self, task: Task) -> None:
+        pass
+
+    def plan(self, observation: Observation) -> Arrived:
+        return Arrived()
+
+
+class _Nan(_Tired):
+    def plan(self, observation: Observation) -> Velocity:  # type: ignore[override]
+        return Velocity(vx=math.nan)
+
+
+def test_a_planner_that_stops_elsewhere_is_lost_and_one_without_answers_is_stuck(course: Course, tmp_path: Path) -> None:
+    for name, planner, outcome, share in (("tired", _Tired, "lost", 0.0), ("nan", _Nan, "stuck", 1.0)):
+        register_planner(name, planner)
+        result = run_episode(EpisodeSpec(name, "house", "none", 0, log=False), course.pair(1), tmp_path / name, tmp_path / "maps")
+        assert result["outcome"] == outcome and result["invalid"] == share * result["plans"] > -1, name
+        assert result["time"] == pytest.approx(15.0, abs=0.2) and result["path_length"] < 0.2
 
 
 def test_a_start_at_the_goal_succeeds_at_once(course: Course, tmp_path: Path) -> None:

@@ -15,6 +15,7 @@ import numpy as np
 import pytest
 from gloam.navigation.benchmark import Results, Summary, load_results, summarize
 from gloam.navigation.benchmark import paper, statistics, tables, words
+from gloam.navigation.benchmark.findings import findings
 from navigation_folder import episode, write_episode, write_folder, write_request
 
 NAME = ("route", "house", "none")
@@ -118,7 +119,7 @@ def test_metrics_of_known_episodes(tmp_path: Path) -> None:
     assert [e.message for e in cell.errors] == ["no map"] and cell.outcomes["error"] == 1
     assert (cell.visibility_mean, cell.visibility_min) == (30.0, 25.0)
     assert cell.worst is not None and cell.worst.key.episode == 2  # SC 0 and farther than episode 3
-    assert cell.median is not None and cell.median.key.episode == 3
+    assert cell.median is not None and cell.median.key.episode == 0  # the better one of 3 and 0
 
 
 def test_cells_without_success_with_one_episode_and_at_the_goal(tmp_path: Path) -> None:
@@ -162,9 +163,10 @@ def test_words_give_the_direction(tmp_path: Path) -> None:
     assert test.success_p == 2 / 2**12 and test.success_holm == 4 / 2**12
     assert words.verdict(test) == "success and SC lower with “major”"
     assert words.success_words(test) == "Successes in 12 pairs: 12 only with “none”, 0 only with “major”, 0 with both."
-    assert words.findings(results, summary) == [
-        "house, highest mean SC: none: route with 1.00; major: no success.",
-        "1 of 1 comparisons between levels of one planner show a clear difference (Holm-adjusted p < 0.05).",
+    assert findings(results, summary) == [
+        "Successes in house from “none” to “major”: route 12 of 12 → 0 of 12 (SC 1.00 → 0.00).",
+        "Highest mean SC in house: route at “none” (1.00) and no planner at “major” (no success).",
+        "1 of 1 comparison between levels of one planner shows a clear difference (Holm-adjusted p < 0.05).",
     ]
     assert words.power_note([test]) == ""  # 2 tests, p down to 2 / 2^12
     assert words.power_note([test] * 60).endswith("At least 13 episodes per cell are needed.")
@@ -183,10 +185,12 @@ def test_different_tasks_of_a_pair_are_reported(tmp_path: Path) -> None:
     ({"outcome": "won"}, "'outcome' is 'won'"), ({"time": math.nan}, "NaN"), ({"time": math.inf}, "Infinity"),
     ({"success": False}, "'success' is False"), ({"success": 1}, "true or false"), ({"collisions": 1.5}, "'collisions' must"),
     ({"collisions": True}, "'collisions' must"), ({"path_length": -1}, "at least 0"), ({"start": [0, 0]}, "array of 3"),
-    ({"goal": [0, "x"]}, "must be a number"), ({"planner": "gnm"}, "belongs to 'route'"), ({"video": "../../x.mp4"}, "'video'"),
+    ({"goal": [0, "x"]}, "must be a number"), ({"planner": "gnm"}, "belongs to 'route'"), ({"log": "../../x.mp4"}, "'log'"),
     ({"log": "javascript:alert(1)"}, "'log'"), ({"late": 81}, "80 answers"), ({"hash": None}, "'hash' must be text"),
     ({"collisions_by_object": {"chair": 1}}, "more collisions"), ({"collisions_by_object": {"chair": -1}}, "'chair'"),
     ({"shortest": None}, "'shortest'"), ({"wall_seconds": 10**400}, "finite"),
+    ({"track": [[1, 2]]}, "'track' must be an array of arrays"), ({"track": [[1, 2, math.nan]]}, "NaN"), ({"track": None}, "'track'"),
+    ({"touches": [[1, 2, 3, 4]]}, "'touches' must"), ({"touches": [[1, 2, "3", "chair"]]}, "'touches' must be a number"),
 ])  # fmt: skip
 def test_wrong_values_name_file_and_cause(tmp_path: Path, change: dict[str, object], cause: str) -> None:
     write_request(tmp_path)

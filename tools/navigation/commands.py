@@ -10,7 +10,7 @@ from pathlib import Path
 
 
 def main(arguments: list[str] | None = None) -> int:
-    """The command line. Exit codes: 0 ok, 1 failure, 2 usage, 130 interrupted."""
+    """The command line. Exit codes: 0 ok, 1 failure, 2 usage, 3 videos are missing, 130 interrupted."""
     parser = argparse.ArgumentParser(prog="gloam", description="Visual navigation (docs/navigation.md).")
     commands = parser.add_subparsers(dest="command", required=True)
     _add_navigate(commands)
@@ -124,6 +124,7 @@ def _add_bench(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     option("--out", default="results/navigation", help="folder of the results; default: %(default)s")
     option("--workers", type=int, default=0, help="processes; default: one for two processors")
     option("--no-log", action="store_true", help="do not record a log of each episode")
+    option("--no-videos", action="store_true", help="do not render the median and the worst episode of each cell")
     option("--no-report", action="store_true", help="run the episodes only")
     command.set_defaults(action=_bench)
 
@@ -131,13 +132,22 @@ def _add_bench(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
 def _bench(given: argparse.Namespace) -> int:
     from gloam.navigation.benchmark.report import write_report
     from gloam.navigation.benchmark.runner import Request, run
+    from gloam.navigation.benchmark.videos import render_videos
 
     split = {name: tuple(filter(None, getattr(given, name).split(","))) for name in ("planners", "scenes", "levels")}
     request = Request(**split, episodes=given.n, seed=given.seed, tier=given.tier, log=not given.no_log)
-    run(request, Path(given.out), given.workers, lambda text: print(text, file=sys.stderr, flush=True))
-    for file in [] if given.no_report else write_report(Path(given.out)):
+    out = Path(given.out)
+
+    def tell(text: str) -> None:
+        print(text, file=sys.stderr, flush=True)
+
+    run(request, out, given.workers, tell)
+    problems = [] if given.no_report or given.no_videos else render_videos(out, tell)
+    for file in [] if given.no_report else write_report(out):
         print(file)
-    return 0
+    for problem in problems:
+        tell(f"gloam: {problem}")
+    return 3 if problems else 0
 
 
 if __name__ == "__main__":

@@ -18,7 +18,7 @@ OUTCOME_COLORS = {
     "timed_out": "#56b4e9", "error": "#222222", "pending": "#ffffff",
 }  # fmt: skip
 LEVEL_COLORS = ("#9ecae1", "#4292c6", "#08519c", "#08306b", "#000000")
-_INK, _SOFT, _GRID = "#222222", "#6b7280", "#e5e7eb"
+INK, _SOFT, _GRID = "#222222", "#6b7280", "#e5e7eb"
 _MOST_COLUMNS = 4
 _MOST_OBJECTS = 12
 _SETTINGS = {
@@ -27,18 +27,18 @@ _SETTINGS = {
     "axes.spines.top": False,
     "axes.spines.right": False,
     "axes.edgecolor": _SOFT,
-    "axes.labelcolor": _INK,
+    "axes.labelcolor": INK,
     "xtick.color": _SOFT,
     "ytick.color": _SOFT,
-    "xtick.labelcolor": _INK,
-    "ytick.labelcolor": _INK,
+    "xtick.labelcolor": INK,
+    "ytick.labelcolor": INK,
     "axes.titlesize": 10,
     "axes.titlelocation": "left",
     "svg.fonttype": "path",
 }
 
 
-class _Chart:
+class Chart:
     """A figure and its matplotlib settings, which apply only inside of the `with` block."""
 
     def __init__(self, width: float, height: float, name: str) -> None:
@@ -46,7 +46,7 @@ class _Chart:
         self._size = (width, height)
         self.svg = ""
 
-    def __enter__(self) -> _Chart:
+    def __enter__(self) -> Chart:
         self._context.__enter__()
         self.figure = require("matplotlib.figure").Figure(figsize=self._size, layout="constrained")
         return self
@@ -55,7 +55,7 @@ class _Chart:
         try:
             if error[0] is None:
                 file = io.StringIO()
-                self.figure.savefig(file, format="svg", metadata={"Date": None})
+                self.figure.savefig(file, format="svg", metadata={"Date": None}, dpi=200)
                 self.svg = file.getvalue()
         finally:
             self._context.__exit__(*error)
@@ -66,7 +66,7 @@ def sc_by_level(request: Request, summary: Summary) -> str:
     columns = min(len(request.planners), _MOST_COLUMNS)
     strips = -(-len(request.planners) // columns)  # rows of panels per scene
     rows = strips * len(request.scenes)
-    with _Chart(0.6 + min(3.4, max(2.6, 10.0 / columns)) * columns, 0.3 + 2.6 * rows, "sc") as chart:
+    with Chart(0.6 + min(3.4, max(2.6, 10.0 / columns)) * columns, 0.3 + 2.6 * rows, "sc") as chart:
         axes = chart.figure.subplots(rows, columns, sharex=True, sharey=True, squeeze=False)
         chart.figure.get_layout_engine().set(h_pad=0.1, w_pad=0.08)
         for axis in axes.flat:
@@ -99,8 +99,8 @@ def _sc_panel(axis: Any, request: Request, summary: Summary, name: tuple[str, st
                       solid_capstyle="butt")  # fmt: skip
         if cell.sc.value is None:
             axis.text(place, 0.5, "no episode", color=_SOFT, ha="center", va="center", rotation=90, fontsize=8)
-    axis.set_title(f"{_short(planner, 30)}\n{_short(scene, 30)}", color=_INK)
-    axis.set_xticks(places, [_short(level, 12) for level in request.levels])
+    axis.set_title(f"{short(planner, 30)}\n{short(scene, 30)}", color=INK)
+    axis.set_xticks(places, [short(level, 12) for level in request.levels])
     axis.set_xlim(-0.4, len(request.levels) - 0.6)
     axis.set_ylim(-0.03, 1.03)
     axis.grid(axis="y", color=_GRID, linewidth=0.8)
@@ -110,7 +110,7 @@ def _sc_panel(axis: Any, request: Request, summary: Summary, name: tuple[str, st
 def outcome_bars(request: Request, summary: Summary) -> str:
     """Outcomes of each cell as stacked bars, one panel per scene; pending episodes are hatched."""
     count = len(request.planners) * len(request.levels)
-    with _Chart(2.4 + 4.2 * len(request.scenes), 1.0 + 0.27 * count, "outcomes") as chart:
+    with Chart(2.4 + 4.2 * len(request.scenes), 1.0 + 0.27 * count, "outcomes") as chart:
         panels = chart.figure.subplots(1, len(request.scenes), sharey=True, squeeze=False)[0]
         used: list[str] = []
         for axis, scene in zip(panels, request.scenes, strict=True):
@@ -119,14 +119,14 @@ def outcome_bars(request: Request, summary: Summary) -> str:
             for i, planner in enumerate(request.planners):
                 for k, level in enumerate(request.levels):
                     places.append(len(labels) + 0.5 * i)
-                    labels.append(f"{_short(planner)} · {_short(level, 12)}")
+                    labels.append(f"{short(planner)} · {short(level, 12)}")
                     _outcome_bar(axis, summary.cell(planner, scene, level), places[-1], used)
             axis.set_yticks(places, labels)
             axis.tick_params(axis="y", length=0)
             axis.set_ylim(places[-1] + 0.6, -0.6)
             axis.set_xlim(0, request.episodes)
             axis.xaxis.get_major_locator().set_params(integer=True)
-            axis.set_title(_short(scene, 40), color=_INK)
+            axis.set_title(short(scene, 40), color=INK)
             axis.set_xlabel("episodes")
         names = [name for name in (*OUTCOMES, "pending") if name in used]
         patch = require("matplotlib.patches").Patch
@@ -152,7 +152,7 @@ def _outcome_bar(axis: Any, cell: CellSummary, place: float, used: list[str]) ->
         dark = outcome in ("success", "fell", "error", "collided")
         if outcome != "pending" and count >= 0.06 * cell.requested:
             axis.text(left + count / 2, place, str(count), ha="center", va="center_baseline", fontsize=8,
-                      color="white" if dark else _INK)  # fmt: skip
+                      color="white" if dark else INK)  # fmt: skip
         left += count
 
 
@@ -164,17 +164,18 @@ def collision_bars(request: Request, summary: Summary) -> str:
         return ""
     totals = {scene: _top_objects([c for c in summary.cells if c.scene == scene]) for scene in scenes}
     height = 1.0 + 0.27 * max(len(total) for total in totals.values())
-    with _Chart(0.8 + 5.0 * len(scenes), height, "collisions") as chart:
+    with Chart(0.8 + 5.0 * len(scenes), height, "collisions") as chart:
         panels = chart.figure.subplots(1, len(scenes), squeeze=False)[0]
         for axis, scene in zip(panels, scenes, strict=True):
             _collision_panel(axis, request, [c for c in summary.cells if c.scene == scene], totals[scene])
-            axis.set_title(_short(scene, 40), color=_INK)
+            axis.set_ylim(max(map(len, totals.values())) - 0.4, -0.6)  # bars of all panels have one height
+            axis.set_title(short(scene, 40), color=INK)
         patch = require("matplotlib.patches").Patch
         handles = [patch(facecolor=_level_color(k), label=str(k)) for k in range(len(request.levels))]
         legend = chart.figure.legend(handles=handles, loc="outside upper left", ncols=len(handles), frameon=False)
         # Set afterwards, because matplotlib hides legends of labels that begin with an underscore.
         for text, level in zip(legend.get_texts(), request.levels, strict=True):
-            text.set_text(_short(level))
+            text.set_text(short(level))
     return chart.svg
 
 
@@ -201,9 +202,8 @@ def _collision_panel(axis: Any, request: Request, cells: Sequence[CellSummary], 
                   for names in bars.values()]  # fmt: skip
         axis.barh(places, widths, left=left, height=0.78, color=_level_color(k), edgecolor="white", linewidth=0.8)
         left = [a + b for a, b in zip(left, widths, strict=True)]
-    axis.set_yticks(places, [_short(name, 28) for name in bars])
+    axis.set_yticks(places, [short(name, 28) for name in bars])
     axis.tick_params(axis="y", length=0)
-    axis.set_ylim(len(bars) - 0.4, -0.6)
     axis.set_xlabel("collisions per episode, summed over levels")
     axis.grid(axis="x", color=_GRID, linewidth=0.8)
     axis.set_axisbelow(True)
@@ -218,6 +218,6 @@ def _gaps(values: Sequence[float | None]) -> list[float]:
     return [float("nan") if value is None else value for value in values]
 
 
-def _short(text: str, most: int = 20) -> str:
+def short(text: str, most: int = 20) -> str:
     """Long names would leave no room for the chart; the tables have them in full."""
     return text if len(text) <= most else text[: most - 1] + "…"

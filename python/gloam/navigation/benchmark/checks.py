@@ -85,6 +85,17 @@ class Fields:
             raise self.error(name, f"must be an array of {count} numbers")
         return tuple(self._number(name, part) for part in value)
 
+    def rows(self, name: str, numbers: int, texts: int = 0) -> tuple[tuple[Any, ...], ...]:
+        """An array of arrays, each of so many finite numbers, followed by so many texts."""
+        value = self.value(name)
+        wrong = self.error(name, f"must be an array of arrays of {numbers} numbers" + (f" and {texts} text" if texts else ""))
+        if not isinstance(value, list):
+            raise wrong
+        for row in value:
+            if not isinstance(row, list) or len(row) != numbers + texts or not all(isinstance(part, str) for part in row[numbers:]):
+                raise wrong
+        return tuple((*(self._number(name, part) for part in row[:numbers]), *row[numbers:]) for row in value)
+
     def names(self, name: str) -> tuple[str, ...]:
         """An array of different names, each of which can be the name of a folder."""
         value = self.value(name)

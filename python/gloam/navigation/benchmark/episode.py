@@ -91,11 +91,10 @@ class Touched:
 
 
 def _object_of(geom: str) -> str:
-    """The kind of object of a geom's name: living/chair_2/collider_1 is a chair."""
+    """The kind of object of a geom's name: living/chair_2/collider_1 is a chair, people3/torso is people."""
     parts = geom.split("/")
     name = parts[-2] if len(parts) > 1 else geom
-    kind, _, number = name.rpartition("_")
-    return kind if number.isdigit() and kind else name or "unnamed"
+    return name.rstrip("0123456789").rstrip("_") or name or "unnamed"
 
 
 class Watch:

@@ -4,19 +4,21 @@ from __future__ import annotations
 
 import argparse
 import base64
-import os
 import sys
-import tempfile
 from collections.abc import Callable
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 from urllib.parse import quote
 
-from gloam.errors import Error, IoError
+from gloam.errors import Error
 
 from . import charts, paper, tables, words
+from .files import replace_file
+from .findings import findings
 from .optional import require
-from .results import Episode, Results, load_results
+from .results import POSTER, VIDEO, Episode, Results, load_results
+from .routes import route_charts
 from .statistics import Estimate, wilson
 from .summary import CellSummary, Summary, summarize
 
@@ -44,22 +46,7 @@ def write_report(folder: str | Path) -> list[Path]:
         "table.tex": lambda path: tables.write_latex(path, results, summary),
         PAGE: lambda path: path.write_text(render_page(results, summary), encoding="utf-8"),
     }
-    return [_replace(folder / name, write) for name, write in writers.items()]
-
-
-def _replace(path: Path, write: Callable[[Path], Any]) -> Path:
-    try:
-        handle, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
-        os.close(handle)
-        try:
-            write(Path(name))
-            os.chmod(name, 0o644)  # mkstemp lets only the owner read
-            os.replace(name, path)
-        finally:
-            Path(name).unlink(missing_ok=True)
-    except OSError as error:
-        raise IoError(f"cannot write the file: {error.strerror}", str(path)) from error
-    return path
+    return [replace_file(folder / name, write) for name, write in writers.items()]
 
 
 def render_page(results: Results, summary: Summary) -> str:
@@ -74,6 +61,7 @@ def render_page(results: Results, summary: Summary) -> str:
         "p": words.p_value,
     }
     environment.tests["clear_test"] = words.is_clear
+    examples = [(cell, _examples(results, cell)) for cell in summary.cells]
     template = environment.from_string(Path(__file__).with_name("report.html").read_text(encoding="utf-8"))
     text: str = template.render(
         request=results.request,
@@ -81,16 +69,19 @@ def render_page(results: Results, summary: Summary) -> str:
         cells=summary.cells,
         tests=summary.tests,
         words=words,
-        findings=words.findings(results, summary),
+        findings=findings(results, summary),
         charts={
             "sc": _image(charts.sc_by_level(results.request, summary)),
             "outcomes": _image(charts.outcome_bars(results.request, summary)),
             "collisions": _image(charts.collision_bars(results.request, summary)),
         },
+        routes={scene: _image(svg) for scene, svg in route_charts(results).items()},
+        errors=_errors(summary),
         few=[cell for cell in summary.cells if 0 < cell.finished < 10],
         total_wall=sum(e.wall_seconds for e in results.episodes),
         total_cpu=sum(e.cpu_seconds for e in results.episodes),
-        examples=[(cell, _examples(results, cell)) for cell in summary.cells],
+        examples=examples,
+        has_videos=any(example.video for _, there in examples for example in there),
         comparison=_comparison(results, summary),
         paper=paper,
         paper_success=_paper_success,
@@ -103,16 +94,41 @@ def _image(svg: str) -> str:
     return "data:image/svg+xml;base64," + base64.b64encode(svg.encode()).decode() if svg else ""
 
 
-def _examples(results: Results, cell: CellSummary) -> list[tuple[str, Episode, list[tuple[str, str]]]]:
-    """("median" or "worst", episode, links to files that exist)."""
-    chosen = [(name, e) for name, e in (("median", cell.median), ("worst", cell.worst)) if e is not None]
-    return [(name, e, _links(results, e)) for name, e in chosen]
+def _errors(summary: Summary) -> list[tuple[str, str, int, list[str]]]:
+    """(planner, message, number of episodes, "scene, level: episodes" of each cell): equal messages in one entry."""
+    groups: dict[tuple[str, str], list[tuple[CellSummary, list[int]]]] = {}
+    for cell in summary.cells:
+        for message in dict.fromkeys(e.message for e in cell.errors):
+            numbers = [e.key.episode for e in cell.errors if e.message == message]
+            groups.setdefault((cell.planner, message), []).append((cell, numbers))
+    return [
+        (planner, message or "no message", sum(len(numbers) for _, numbers in there),
+         [f"{cell.scene}, {cell.level}: {words.episodes(numbers, cell.requested)}" for cell, numbers in there])
+        for (planner, message), there in groups.items()
+    ]  # fmt: skip
 
 
-def _links(results: Results, episode: Episode) -> list[tuple[str, str]]:
-    files = [(name, file) for name, file in (("video", episode.video), ("log", episode.log)) if file is not None]
-    paths = [(name, f"{episode.key.folder}/{file}") for name, file in files]
-    return [(name, quote(path)) for name, path in paths if (results.folder / path).is_file()]
+@dataclass(frozen=True)
+class _Example:
+    """The median or the worst episode of a cell, with the addresses of its files; "" = there is none."""
+
+    episode: Episode
+    video: str
+    poster: str
+    log: str
+
+
+def _examples(results: Results, cell: CellSummary) -> list[_Example]:
+    """The median episode and the worst one, if it is another."""
+    chosen = [e for e in (cell.median, cell.worst) if e is not None]
+    if len(chosen) == 2 and chosen[0] is chosen[1]:
+        chosen.pop()
+    return [_Example(e, *(_address(results, e, file) for file in (VIDEO, POSTER, e.log))) for e in chosen]
+
+
+def _address(results: Results, episode: Episode, file: str | None) -> str:
+    path = f"{episode.key.folder}/{file}"
+    return quote(path) if file and (results.folder / path).is_file() else ""
 
 
 def _comparison(results: Results, summary: Summary) -> list[tuple[str, str, list[paper.PaperRow], list[CellSummary]]]:

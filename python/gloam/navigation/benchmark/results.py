@@ -15,6 +15,7 @@ from gloam.errors import InputError, IoError
 from .checks import Fields, read_object
 
 OUTCOMES = ("success", "collided", "fell", "stuck", "lost", "timed_out", "error")
+VIDEO, POSTER = "video.mp4", "poster.jpg"  # in the folders of episodes that have a video
 
 
 @dataclass(frozen=True)
@@ -59,7 +60,9 @@ class Episode:
 
     start: (x, y, yaw) [m, rad]; goal: (x, y) [m]; shortest, path_length, final_distance, visibility_*: [m]; limit, time:
     simulation time [s]; wall_seconds, cpu_seconds: cost [s]; plans: answers of the planner, of which `late` came after
-    their deadline and `invalid` were NaN or exceptions; visibility_*: None if unknown.
+    their deadline and `invalid` were NaN or exceptions; visibility_*: None if unknown;
+    track: (time [s], x, y [m]) of the robot twice per second and at the end; touches: (time [s], x, y [m], object) of each
+    collision. The log begins a second before the episode, so these times are up to 1 s + limit.
     """
 
     key: Key
@@ -84,9 +87,10 @@ class Episode:
     cpu_seconds: float
     tier: str
     log: str | None
-    video: str | None
     hash: str
     message: str
+    track: tuple[tuple[float, float, float], ...]
+    touches: tuple[tuple[float, float, float, str], ...]
 
     @property
     def sc(self) -> float:
@@ -175,7 +179,7 @@ def _episode(path: Path, key: Key) -> Episode:
     read |= {"seed": values.integer("seed"), "start": values.numbers("start", 3), "goal": values.numbers("goal", 2)}
     read |= {name: values.integer(name, least=0) for name in ("collisions", "plans", "late", "invalid")}
     read |= {name: values.text(name) for name in ("tier", "hash", "message")}
-    read |= {name: values.relative_file(name) for name in ("log", "video")}
+    read |= {"log": values.relative_file("log"), "track": values.rows("track", 3), "touches": values.rows("touches", 3, 1)}
     read |= {name: values.optional_length(name) for name in ("visibility_mean", "visibility_min")}
     read["collisions_by_object"] = values.counts("collisions_by_object")
     read |= {field.name: values.length(field.name) for field in fields(Episode) if field.name not in read}

@@ -137,7 +137,7 @@ def _cell(
         objects.update({name: count for name, count in episode.collisions_by_object.items() if count})
         if unknown := episode.collisions - sum(episode.collisions_by_object.values()):
             objects["(unknown)"] += unknown
-    ranked = sorted(episodes, key=lambda e: (e.sc, -e.final_distance, e.key.episode))
+    median, worst = median_and_worst(episodes)
     least = [e.visibility_min for e in episodes if e.visibility_min is not None]
     return CellSummary(
         *name,
@@ -160,9 +160,16 @@ def _cell(
         outcomes=dict(outcomes),
         objects=dict(sorted(objects.items(), key=lambda item: (-item[1], item[0]))),
         errors=tuple(e for e in episodes if e.outcome == "error"),
-        worst=ranked[0] if ranked else None,
-        median=ranked[(len(ranked) - 1) // 2] if ranked else None,
+        worst=worst,
+        median=median,
     )
+
+
+def median_and_worst(episodes: list[Episode]) -> tuple[Episode | None, Episode | None]:
+    """The median episode of a cell and its worst one, by SC, then by final distance, then by number; None without any.
+    Of an even number, the median is the better one of the two in the middle, so that it is not the worst of two."""
+    ranked = sorted(episodes, key=lambda e: (e.sc, -e.final_distance, e.key.episode))
+    return (ranked[len(ranked) // 2], ranked[0]) if ranked else (None, None)
 
 
 _Cell = tuple[str, str, str]

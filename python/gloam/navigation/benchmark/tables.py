@@ -17,7 +17,7 @@ from .summary import CellSummary, PairedTest, Summary
 ESTIMATES = ("success", "sc", "spl", "collisions", "time", "distance")
 _KEY = ("planner", "scene", "level", "episode")
 _INTEGERS = ("episode", "seed", "collisions", "plans", "late", "invalid")
-_TEXTS = ("planner", "scene", "level", "status", "outcome", "collisions_by_object", "tier", "log", "video", "hash", "message")
+_TEXTS = ("planner", "scene", "level", "status", "outcome", "collisions_by_object", "tier", "log", "hash", "message")
 Row = dict[str, Any]
 
 
@@ -33,7 +33,7 @@ def episode_rows(results: Results) -> list[Row]:
 
 def _values_of_episode() -> list[str]:
     places = ["start_x", "start_y", "start_yaw", "goal_x", "goal_y"]
-    names = [name for name in Episode.__dataclass_fields__ if name not in ("key", "start", "goal")]
+    names = [name for name in Episode.__dataclass_fields__ if name not in ("key", "start", "goal", "track", "touches")]
     return ["sc", "spl", *places, *names]
 
 

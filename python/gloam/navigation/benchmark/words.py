@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from .results import Results
+from collections.abc import Sequence
+
 from .statistics import Estimate
-from .summary import CellSummary, PairedTest, Summary
+from .summary import PairedTest
 
 ALPHA = 0.05
 NONE = "–"
@@ -57,9 +58,9 @@ def success_words(test: PairedTest) -> str:
     if test.success_p is None:
         return "No episode is finished in both."
     if test.first_only == test.second_only == 0:
-        return f"Both have the same outcome in all {_pairs(test)}: {test.both} successes."
+        return f"Both have the same outcome in {'all ' if test.pairs > 1 else ''}{count(test.pairs, 'pair')}: {count(test.both, 'success')}."
     return (
-        f"Successes in {_pairs(test)}: {test.first_only} only with {first}, {test.second_only} only with {second}, "
+        f"Successes in {count(test.pairs, 'pair')}: {test.first_only} only with {first}, {test.second_only} only with {second}, "
         f"{test.both} with both."
     )
 
@@ -97,48 +98,38 @@ def is_clear(test: PairedTest) -> bool:
     return any(p is not None and p < ALPHA for p in (test.success_holm, test.sc_holm))
 
 
-def power_note(tests: list[PairedTest]) -> str:
+def power_note(family: list[PairedTest]) -> str:
     """A sentence if no test of a family can have an adjusted p below 0.05, because the smallest p-value of its pairs times
     the number of tests is larger; "" otherwise."""
-    known = [test for test in tests if test.success_p is not None]
-    count = 2 * len(known)
-    if not known or count * min(test.least_p for test in known) < ALPHA:
+    known = [test for test in family if test.success_p is not None]
+    tests = 2 * len(known)
+    if not known or tests * min(test.least_p for test in known) < ALPHA:
         return ""
-    needed = next(n for n in range(1, 100) if count * 2.0 ** (1 - n) < ALPHA)
+    needed = next(n for n in range(1, 100) if tests * 2.0 ** (1 - n) < ALPHA)
     return (
-        f"No result can be clear here: with {max(test.pairs for test in known)} pairs and {count} tests, no adjusted p can "
+        f"No result can be clear here: with {count(max(test.pairs for test in known), 'pair')} and {tests} tests, no adjusted p can "
         f"be below 0.05. At least {needed} episodes per cell are needed."
     )
 
 
-def findings(results: Results, summary: Summary) -> list[str]:
-    """Sentences for the top of the page: the best planner of each scene and level, and the effect of the levels."""
-    sentences = []
-    for scene in results.request.scenes:
-        parts = []
-        for level in results.request.levels:
-            cells = [c for c in summary.cells if (c.scene, c.level) == (scene, level) and c.sc.value is not None]
-            if cells:
-                parts.append(_best(level, cells))
-        if parts:
-            sentences.append(f"{scene}, highest mean SC: {'; '.join(parts)}.")
-    for kind, subject in (("levels", "between levels of one planner"), ("planners", "between planners at one level")):
-        tests = [t for t in summary.tests if t.kind == kind]
-        if tests:
-            clear = sum(map(is_clear, tests))
-            sentences.append(f"{clear} of {len(tests)} comparisons {subject} show a clear difference (Holm-adjusted p < 0.05).")
-    return sentences
+def numbers(values: Sequence[int]) -> str:
+    """Increasing numbers as ranges: "3, 17–19"."""
+    parts: list[list[int]] = []
+    for value in values:
+        if parts and value == parts[-1][-1] + 1:
+            parts[-1].append(value)
+        else:
+            parts.append([value])
+    return ", ".join(str(part[0]) if len(part) == 1 else f"{part[0]}{', ' if len(part) == 2 else '–'}{part[-1]}" for part in parts)
 
 
-def _best(level: str, cells: list[CellSummary]) -> str:
-    top = max(c.sc.value or 0.0 for c in cells)
-    if top == 0:
-        return f"{level}: no success"
-    best = [c for c in cells if c.sc.value == top]
-    names = " and ".join(c.planner for c in best)
-    brackets = "" if best[0].sc.constant else interval(best[0].sc)
-    return f"{level}: {names} with {number(top)} {brackets}".rstrip()
+def episodes(values: Sequence[int], requested: int) -> str:
+    """ "all 5 episodes", "both episodes", "episode 3", "episodes 3, 17–19"."""
+    if len(values) == requested:
+        return {1: "the only episode", 2: "both episodes"}.get(requested, f"all {requested} episodes")
+    return f"{'episode' if len(values) == 1 else 'episodes'} {numbers(values)}"
 
 
-def _pairs(test: PairedTest) -> str:
-    return f"{test.pairs} {'pair' if test.pairs == 1 else 'pairs'}"
+def count(number: int, noun: str) -> str:
+    """ "1 collision", "2 collisions"; the plural of "success" is "successes"."""
+    return f"{number} {noun}" if number == 1 else f"{number} {noun}{'es' if noun.endswith('s') else 's'}"

@@ -1,0 +1,117 @@
+"""Videos of the median and the worst episode of each cell, rendered from their logs.
+
+A video shows the image of the robot's camera beside its route on the floor plan, at twice the speed of the simulation. A
+finished one is kept until another episode is the median or the worst.
+"""
+
+from __future__ import annotations
+
+import shutil
+import tempfile
+import time
+from bisect import bisect_right
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import gloam
+
+from .files import locked
+from .floor_plan import FloorPlan, plan_of
+from .movie import write_movie
+from .optional import require
+from .places import CAMERA
+from .results import POSTER, VIDEO, Episode, Results, load_results
+from .route_view import RouteView
+from .summary import median_and_worst
+from .words import duration
+
+_RATE, _SPEED = 4.0, 2.0  # images per second of simulation time [Hz]; speed of the video relative to it
+_CAMERA_SIZE = (160, 120)  # as for networks: four times as many pixels would cost four times as much [px]
+_VIEW, _TITLE = (320, 240), 24  # the camera's image and the map, and the height of the title [px]
+
+
+def render_videos(folder: Path, tell: Callable[[str], None]) -> list[str]:
+    """Renders the videos that are missing, and removes those of other episodes. tell: progress, a line per video.
+
+    Returns a sentence for each video that could not be rendered, such as on a full disk; another call tries again. Errors:
+    gloam.UsageError if another process uses the folder; as load_results; gloam.UnsupportedError without matplotlib.
+    """
+    require("matplotlib")
+    results = load_results(folder)
+    with locked(folder):
+        chosen = chosen_episodes(results)
+        _remove_others(folder, chosen)
+        waiting = [e for e in chosen if not (folder / e.key.folder / VIDEO).is_file()]
+        problems, begin = [], time.monotonic()
+        for done, episode in enumerate(waiting):
+            name = episode.key.folder.removeprefix("episodes/")
+            left = f", {duration((time.monotonic() - begin) / done * (len(waiting) - done))} left" if done else ""
+            tell(f"video {done + 1} of {len(waiting)}: {name}{left}")
+            try:
+                _render(folder, episode)
+            except gloam.Error as error:
+                problems.append(f"no video of {name}: {error}")
+        return problems
+
+
+def chosen_episodes(results: Results) -> list[Episode]:
+    """The median and the worst episode of each cell that have a log, without repetitions."""
+    pairs = (median_and_worst(results.cell(*cell)) for cell in results.request.cells())
+    chosen = {e.key: e for pair in pairs for e in pair if e is not None}
+    return [e for e in chosen.values() if e.log and (results.folder / e.key.folder / e.log).is_file()]
+
+
+def _remove_others(folder: Path, chosen: list[Episode]) -> None:
+    """Removes videos of episodes that are no longer chosen, and remains of an interrupted call."""
+    kept = {folder / e.key.folder for e in chosen}
+    for path in [*(folder / "episodes").glob(f"*/*/*/*/{VIDEO}"), *(folder / "episodes").glob(f"*/*/*/*/{POSTER}")]:
+        if path.parent not in kept:
+            path.unlink(missing_ok=True)
+    for path in (folder / "episodes").glob("*/*/*/*/.video-*"):
+        shutil.rmtree(path, ignore_errors=True)
+
+
+def _render(folder: Path, episode: Episode) -> None:
+    home = folder / episode.key.folder
+    try:
+        with tempfile.TemporaryDirectory(dir=home, prefix=".video-") as name:
+            work = Path(name)
+            images = _replayed(home / str(episode.log), work / "replay")
+            plan = plan_of(folder, episode.key.scene, episode.key.level)
+            poster: list[Any] = []
+            write_movie(work / VIDEO, _composed(images, episode, plan, poster), _RATE * _SPEED)
+            poster[-1].save(work / POSTER, "JPEG", quality=80)
+            # The video comes last: where it exists, the poster does too.
+            (work / POSTER).replace(home / POSTER)
+            (work / VIDEO).replace(home / VIDEO)
+    except OSError as error:
+        raise gloam.IoError(f"cannot write the video: {error.strerror or error}", str(home / VIDEO)) from error
+
+
+def _replayed(log: Path, out: Path) -> list[Path]:
+    """Images of the robot's camera, `_RATE` per second."""
+    gloam.replay(log).replay(
+        out, outputs=["png"], cameras=[CAMERA], width=_CAMERA_SIZE[0], height=_CAMERA_SIZE[1], rate=_RATE,
+        settings={"render.tier": "interactive"}, progress=False,
+    )  # fmt: skip
+    images = sorted(out.rglob("*.png"))
+    if not images:
+        raise gloam.InputError("the replay has no images", str(log))
+    return images
+
+
+def _composed(images: list[Path], episode: Episode, plan: FloorPlan | None, last: list[Any]) -> Iterator[Any]:
+    """Images of the video; `last` keeps the last one."""
+    pillow = require("PIL.Image")
+    route = RouteView(episode, plan, _VIEW)
+    times = [t for t, *_ in episode.touches]
+    for k, path in enumerate(images):
+        now = k / _RATE
+        canvas = pillow.new("RGB", (2 * _VIEW[0], _TITLE + _VIEW[1]), "white")
+        with pillow.open(path) as own:
+            canvas.paste(own.convert("RGB").resize(_VIEW), (0, _TITLE))
+        canvas.paste(route.at(now), (_VIEW[0], _TITLE))
+        canvas.paste(route.title(now, bisect_right(times, now), (canvas.width, _TITLE)), (0, 0))
+        last[:] = [canvas]
+        yield canvas
