@@ -63,6 +63,10 @@ def measure(log: Path, goal: list[float], limit: float) -> dict[str, Any]:
 def measured(episode: dict[str, Any], log: Path) -> dict[str, Any]:
     """An episode.json with the values that the log gives. Values that the log does not have stay: the shortest path, the
     planner's answers, costs. AssertionError if the log is not of this episode."""
+    if episode["outcome"] == "error":  # a program failed before the robot moved
+        distance = math.dist(episode["start"][:2], episode["goal"])
+        nothing = {"time": 0.0, "path_length": 0.0, "collisions": 0, "collisions_by_object": {}, "final_distance": distance}
+        return {**episode, **nothing, "success": False}
     place = _commands(log)[0]["qpos"]
     assert math.dist(place[:2], episode["start"][:2]) < 1e-9, "the log begins elsewhere"
     values = measure(log, episode["goal"], episode["limit"])
@@ -128,7 +132,6 @@ def _ended(sim: gloam.Simulation, places: list[tuple[float, float]], goal: tuple
         return "success"
     if float(sim.robots["go"].pose.R[2][2]) < 0.5:  # tilted by more than 60 degrees
         return "fell"
-    recent = places[-round(15.0 / PERIOD):]
-    if len(places) > len(recent) and all(math.dist(place, places[-1]) < 0.25 for place in recent):
-        return "stayed"
-    return ""
+    recent = places[-1 - round(15.0 / PERIOD) :]  # 15 s have one instant more than intervals
+    is_long = len(recent) > round(15.0 / PERIOD)
+    return "stayed" if is_long and max(math.dist(place, places[-1]) for place in recent) < 0.25 else ""

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
+import navigation_page
 import navigation_recompute
 import pytest
 from gloam.navigation.benchmark import write_report
@@ -25,7 +26,7 @@ def test_a_benchmark_agrees_with_its_logs(tmp_path: Path) -> None:
         write_report(tmp_path)
         computed = navigation_recompute.cells(tmp_path, measured)
         page = (tmp_path / "report.html").read_text()
-        return navigation_recompute.differences(tmp_path, computed) + navigation_recompute.page_differences(page, computed[2])
+        return navigation_recompute.differences(tmp_path, computed) + navigation_page.differences(page, computed[2])
 
     assert problems() == []
     file = tmp_path / "episodes" / "route" / "house" / "none" / "0001" / "episode.json"

@@ -10,6 +10,7 @@ from typing import Any
 from urllib.parse import unquote
 
 import gloam
+import navigation_page
 import navigation_recompute
 import pytest
 from gloam.navigation.benchmark import write_report
@@ -65,8 +66,8 @@ def test_a_wrong_p_value_is_noticed(report: Path, computed: Any, tmp_path: Path)
 
 def test_the_page_prints_the_recomputed_figures(report: Path, computed: Any) -> None:
     text = (report / "report.html").read_text()
-    assert navigation_recompute.page_differences(text, computed[2]) == []
-    assert len(navigation_recompute.Page(text).figures) == 18 * 8
+    assert navigation_page.differences(text, computed[2]) == []
+    assert len(navigation_page.Page(text).figures) == 18 * 8
 
 
 @pytest.mark.parametrize("metric", ["success", "collisions", "time", "wall"])
@@ -75,7 +76,7 @@ def test_a_wrong_figure_of_the_page_is_noticed(report: Path, computed: Any, metr
     found = re.search(rf'data-cell="gnm/house/major" data-metric="{metric}"><b>([\d.]+)', text)
     assert found
     changed = text[: found.start(1)] + f"{float(found[1]) + 0.2:.2f}" + text[found.end(1) :]
-    (wrong,) = navigation_recompute.page_differences(changed, computed[2])
+    (wrong,) = navigation_page.differences(changed, computed[2])
     assert metric in wrong and "gnm" in wrong
 
 
@@ -85,7 +86,7 @@ def test_pending_episodes_are_listed(report: Path) -> None:
 
 
 def test_the_page_requests_nothing_and_its_links_exist(report: Path) -> None:
-    page = navigation_recompute.Page((report / "report.html").read_text())
+    page = navigation_page.Page((report / "report.html").read_text())
     assert page.tags.isdisjoint({"script", "iframe", "link", "object"})
     links = [address for address in page.addresses if address.startswith("episodes/")]
     assert len(links) == 18 * 2 and all((report / link).is_file() for link in links)
@@ -105,7 +106,7 @@ def test_videos_have_addresses_in_the_folder(tmp_path: Path) -> None:
         (home / "video.mp4").touch()
         (home / "poster.jpg").touch()
     write_report(tmp_path)
-    page = navigation_recompute.Page((tmp_path / "report.html").read_text())
+    page = navigation_page.Page((tmp_path / "report.html").read_text())
     addresses = [unquote(address) for address in page.addresses if address.startswith("episodes/")]
     assert "video" in page.tags and all("#" not in address and " " not in address for address in page.addresses if "mp4" in address)
     expected = [f"episodes/{name}/b/c/{number:04}/{file}" for number in (1, 2) for file in ("poster.jpg", "video.mp4")]
@@ -152,7 +153,7 @@ def test_hostile_names_stay_text(tmp_path: Path) -> None:
     write_report(tmp_path)
     text = (tmp_path / "report.html").read_text()
     assert "<script" not in text.lower() and "&lt;script&gt;" in text
-    assert navigation_recompute.Page(text).tags.isdisjoint({"script", "iframe"})
+    assert navigation_page.Page(text).tags.isdisjoint({"script", "iframe"})
 
 
 def test_a_folder_without_an_episode_has_a_page(tmp_path: Path) -> None:

@@ -80,7 +80,7 @@ class Driver:
 
     def run(self, task: Task, until: float, watch: Callable[[gloam.Simulation], bool] | None = None) -> None:
         """Drives until the time [s], or until watch(sim) returns True, which is called every 50 ms after the start,
-        whatever the planner's rate: measurements of planners with different rates can be compared.
+        independently of the planner's rate: measurements of planners with different rates can be compared.
 
         Errors: UsageError if the planner rejects the task. Exceptions of plan() are counted (stats).
         """

@@ -15,7 +15,7 @@ import numpy as np
 
 import gloam
 
-from ..driver import Driver, Rig
+from ..driver import WATCH_PERIOD, Driver, Rig
 from ..grid import Point
 from ..planner import Task, make_planner
 from .demonstration import map_of
@@ -116,7 +116,7 @@ class Watch:
             self.outcome = "success"
         elif float(np.asarray(pose.R)[2, 2]) < 0.5:
             self.outcome = "fell"
-        elif self._stays(sim.time, here):
+        elif self._stays(here):
             self.outcome = "collided" if self.touched.is_touching(sim.time) else "stuck"
         return self.outcome != ""
 
@@ -127,9 +127,9 @@ class Watch:
             kept.append(self.places[-1])
         return [(round(time, 3), round(x, 3), round(y, 3)) for time, (x, y) in kept]
 
-    def _stays(self, now: float, here: Point) -> bool:
-        recent = [place for then, place in self.places if then > now - _STUCK_TIME]
-        return now - self.places[0][0] >= _STUCK_TIME and max(math.dist(place, here) for place in recent) < _STUCK_REACH
+    def _stays(self, here: Point) -> bool:
+        count = round(_STUCK_TIME / WATCH_PERIOD) + 1  # of instants, not a difference of times, which is rounded
+        return len(self.places) >= count and all(math.dist(place, here) < _STUCK_REACH for _, place in self.places[-count:])
 
 
 def run_episode(spec: EpisodeSpec, pair: Pair, folder: Path, maps: Path) -> dict[str, Any]:

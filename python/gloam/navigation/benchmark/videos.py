@@ -31,8 +31,8 @@ _CAMERA_SIZE = (160, 120)  # as for networks: four times as many pixels would co
 _VIEW, _TITLE = (320, 240), 24  # the camera's image and the map, and the height of the title [px]
 
 
-def render_videos(folder: Path, tell: Callable[[str], None]) -> list[str]:
-    """Renders the videos that are missing, and removes those of other episodes. tell: progress, a line per video.
+def render_videos(folder: Path, progress: Callable[[str], None]) -> list[str]:
+    """Renders the missing videos, and removes videos of other episodes. progress: gets a line per video.
 
     Returns a sentence for each video that could not be rendered, such as on a full disk; another call tries again. Errors:
     gloam.UsageError if another process uses the folder; as load_results; gloam.UnsupportedError without matplotlib.
@@ -47,7 +47,7 @@ def render_videos(folder: Path, tell: Callable[[str], None]) -> list[str]:
         for done, episode in enumerate(waiting):
             name = episode.key.folder.removeprefix("episodes/")
             left = f", {duration((time.monotonic() - begin) / done * (len(waiting) - done))} left" if done else ""
-            tell(f"video {done + 1} of {len(waiting)}: {name}{left}")
+            progress(f"video {done + 1} of {len(waiting)}: {name}{left}")
             try:
                 _render(folder, episode)
             except gloam.Error as error:
