@@ -22,6 +22,8 @@ def write_request(folder: Path, **changes: Any) -> dict[str, Any]:
         "levels": list(HARDER),
         "episodes": 20,
         "seed": 7,
+        "tier": "interactive",
+        "log": True,
         "machine": "8 cores, no GPU",
         "version": "0.9.0",
         "started": "2025-06-01T12:00:00Z",

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import math
 import shutil
+from dataclasses import fields, replace
 from pathlib import Path
 
 import gloam
@@ -13,7 +14,8 @@ import pytest
 from gloam.navigation import Arrived, Observation, Planner, Task, Velocity, register_planner
 from gloam.navigation.benchmark.episode import EpisodeSpec, Touched, Watch, run_episode
 from gloam.navigation.benchmark.places import LEVELS, ROBOT, Course, Pair, scene_of, smoothed
-from gloam.navigation.benchmark.runner import Request, run
+from gloam.navigation.benchmark.request import REQUEST_FILE, Request
+from gloam.navigation.benchmark.runner import run
 from gloam.navigation.grid import Grid, length_of, point_ahead
 from gloam.navigation.window import DynamicWindow, WindowOptions
 from navigation_replay import measured
@@ -192,6 +194,26 @@ def test_requests_are_checked(tmp_path: Path) -> None:
     ):  # fmt: skip
         with pytest.raises(gloam.Error, match=message):
             run(bad, tmp_path / "x")
+
+
+def test_a_request_survives_its_file_and_is_continued(tmp_path: Path) -> None:
+    request = Request(("route", "own"), ("house",), ("none", "minor"), 3, 5, "path", False)
+    same_as_default = [f.name for f in fields(Request) if getattr(request, f.name) == getattr(Request(()), f.name)]
+    assert same_as_default == ["machine", "version", "started"], "each option is compared below"
+    request.keep(tmp_path)
+    kept = Request.read(tmp_path / REQUEST_FILE)
+    assert replace(kept, machine="", version="", started="") == request
+    assert kept.machine and kept.started and kept.version == gloam.__version__
+    (tmp_path / REQUEST_FILE).write_text(json.dumps(vars(replace(kept, started="2020-01-01", machine="another"))))
+    for episodes, most in ((9, 9), (2, 9)):
+        replace(request, episodes=episodes).keep(tmp_path)
+        assert Request.read(tmp_path / REQUEST_FILE) == replace(kept, started="2020-01-01", episodes=most)
+    for name, value in (("planners", ("route",)), ("seed", 6), ("tier", "direct"), ("log", True)):
+        with pytest.raises(gloam.UsageError, match=rf"another benchmark \({name} differ\)"):
+            replace(request, **{name: value}).keep(tmp_path)
+    (tmp_path / REQUEST_FILE).write_text("{")
+    with pytest.raises(gloam.InputError, match="request.json"):
+        request.keep(tmp_path)
 
 
 @pytest.mark.slow

@@ -131,7 +131,8 @@ def _add_bench(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
 
 def _bench(given: argparse.Namespace) -> int:
     from gloam.navigation.benchmark.report import write_report
-    from gloam.navigation.benchmark.runner import Request, run
+    from gloam.navigation.benchmark.request import Request
+    from gloam.navigation.benchmark.runner import run
     from gloam.navigation.benchmark.videos import render_videos
 
     split = {name: tuple(filter(None, getattr(given, name).split(","))) for name in ("planners", "scenes", "levels")}

@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from .report import write_report
-    from .results import Episode, Request, Results, load_results
+    from .request import Request
+    from .results import Episode, Results, load_results
     from .summary import CellSummary, PairedTest, Summary, summarize
 
 __all__ = [
@@ -23,7 +24,8 @@ __all__ = [
 ]
 
 _HOMES = {
-    **dict.fromkeys(("Episode", "Request", "Results", "load_results"), "results"),
+    "Request": "request",
+    **dict.fromkeys(("Episode", "Results", "load_results"), "results"),
     **dict.fromkeys(("CellSummary", "PairedTest", "Summary", "summarize"), "summary"),
     "write_report": "report",
 }

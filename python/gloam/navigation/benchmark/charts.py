@@ -8,7 +8,8 @@ from collections.abc import Sequence
 from typing import Any
 
 from .optional import require
-from .results import OUTCOMES, Request
+from .request import Request
+from .results import OUTCOMES
 from .summary import CellSummary, Summary
 
 # Okabe and Ito's palette, which people with colour blindness can distinguish.

@@ -19,6 +19,7 @@ from ..driver import WATCH_PERIOD, Driver, Rig
 from ..grid import Point
 from ..planner import Task, make_planner
 from .demonstration import map_of
+from .key import Key
 from .places import CAMERA, LIDAR, RADIUS, ROBOT, TOP_SPEED, Pair, world_of
 
 LOG_TOPICS = ("/clock", "/tf*")
@@ -51,7 +52,7 @@ class EpisodeSpec:
     @property
     def path(self) -> Path:
         """Its folder in `episodes` of the results."""
-        return Path(self.planner) / self.place / self.level / f"{self.number:04}"
+        return Path(Key(self.planner, self.place, self.level, self.number).name)
 
 
 class Touched:

@@ -5,53 +5,18 @@ Wrong input raises `gloam.InputError` with the file and the cause. Episodes that
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Any
 
-from gloam.errors import InputError, IoError
+from gloam.errors import InputError
 
 from .checks import Fields, read_object
+from .key import Key
+from .request import REQUEST_FILE, Request
 
 OUTCOMES = ("success", "collided", "fell", "stuck", "lost", "timed_out", "error")
 VIDEO, POSTER = "video.mp4", "poster.jpg"  # in the folders of episodes that have a video
-
-
-@dataclass(frozen=True)
-class Key:
-    """Position of an episode in the request; `episode` counts from 0 and pairs the same task across cells."""
-
-    planner: str
-    scene: str
-    level: str
-    episode: int
-
-    @property
-    def folder(self) -> str:
-        """Folder of the episode, relative to the folder of the benchmark."""
-        return f"episodes/{self.planner}/{self.scene}/{self.level}/{self.episode:04d}"
-
-
-@dataclass(frozen=True)
-class Request:
-    """The benchmark that was asked for: every planner in every scene at every level, `episodes` times.
-
-    levels: in order of increasing adversity; machine, version, started: text for the page, machine may be an object.
-    """
-
-    planners: tuple[str, ...]
-    scenes: tuple[str, ...]
-    levels: tuple[str, ...]
-    episodes: int
-    seed: int
-    machine: str
-    version: str
-    started: str
-
-    def cells(self) -> Iterator[tuple[str, str, str]]:
-        """(planner, scene, level) of all cells, scenes first, in the order of the request."""
-        return ((p, s, v) for s in self.scenes for v in self.levels for p in self.planners)
 
 
 @dataclass(frozen=True)
@@ -132,7 +97,7 @@ def load_results(folder: str | Path) -> Results:
     episode outside of the request; gloam.IoError if a file cannot be read.
     """
     folder = Path(folder)
-    request = _request(folder / "request.json")
+    request = Request.read(folder / REQUEST_FILE)
     wanted = [Key(p, s, v, n) for p, s, v in request.cells() for n in range(request.episodes)]
     expected = {key.folder: key for key in wanted}
     found: dict[Key, Episode] = {}
@@ -147,22 +112,6 @@ def load_results(folder: str | Path) -> Results:
         tuple(found[key] for key in wanted if key in found),
         tuple(key for key in wanted if key not in found),
         _warnings(found.values()),
-    )
-
-
-def _request(path: Path) -> Request:
-    if not path.parent.is_dir():
-        raise IoError("there is no such folder", str(path.parent))
-    values = Fields(read_object(path), path)
-    return Request(
-        values.names("planners"),
-        values.names("scenes"),
-        values.names("levels"),
-        values.integer("episodes", least=1),
-        values.integer("seed"),
-        values.description("machine"),
-        values.text("version"),
-        values.text("started"),
     )
 
 

@@ -10,59 +10,23 @@ import fcntl
 import json
 import multiprocessing
 import os
-import platform
 import shutil
 import time
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
-from dataclasses import asdict, dataclass
 from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
 import gloam
 
-from ..planner import planner_names
 from .episode import EpisodeSpec, run_episode
-from .places import LEVELS, PLACES, Course
+from .places import Course
+from .request import Request
 
 _MOST_CRASHES = 3  # of worker processes with one episode, before the benchmark stops
-
-
-@dataclass(frozen=True)
-class Request:
-    """Episodes of a results folder: all planners x scenes x levels x numbers 0 … episodes - 1."""
-
-    planners: tuple[str, ...]
-    scenes: tuple[str, ...] = ("house", "warehouse")
-    levels: tuple[str, ...] = LEVELS
-    episodes: int = 100
-    seed: int = 1
-    tier: str = "interactive"
-    log: bool = True
-
-    def check(self) -> None:
-        """Errors: NotFoundError for an unknown planner, scene or level; UsageError for numbers out of range."""
-        for kind, asked, known in (
-            ("planner", self.planners, planner_names()), ("scene", self.scenes, PLACES), ("level", self.levels, LEVELS),
-        ):  # fmt: skip
-            for name in asked:
-                if name not in known:
-                    raise gloam.NotFoundError(f"there is no {kind} '{name}'; there are: {', '.join(known)}")
-            if not asked or len(set(asked)) != len(asked):
-                raise gloam.UsageError(f"name each {kind} once, got {', '.join(asked) or 'none'}")
-        if not 1 <= self.episodes <= 100_000 or not 0 <= self.seed < 2**32:
-            raise gloam.UsageError("expected 1 to 100000 episodes, and a seed from 0 to 2^32 - 1")
-
-    def specs(self) -> Iterator[EpisodeSpec]:
-        """All episodes, one of each cell before the second of any: an interrupted run has something of everything."""
-        for number in range(self.episodes):
-            for scene in self.scenes:
-                for level in self.levels:
-                    for planner in self.planners:
-                        yield EpisodeSpec(planner, scene, level, number, self.seed, self.tier, log=self.log)
 
 
 def run(request: Request, out: Path, workers: int = 0, tell: Callable[[str], None] | None = None) -> list[dict[str, Any]]:
@@ -80,34 +44,15 @@ def run(request: Request, out: Path, workers: int = 0, tell: Callable[[str], Non
 
 @contextmanager
 def _folder(request: Request, out: Path) -> Iterator[None]:
-    """Locks the folder, and writes or compares its request."""
+    """Locks the folder, and keeps its request."""
     out.mkdir(parents=True, exist_ok=True)
     with (out / ".lock").open("w") as lock:
         try:
             fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except BlockingIOError:
             raise gloam.UsageError(f"{out} is in use by another benchmark") from None
-        file = out / "request.json"
-        asked = json.loads(json.dumps(asdict(request)))
-        if file.is_file():
-            kept = json.loads(file.read_text(encoding="utf-8"))
-            different = sorted(key for key in asked if key != "episodes" and kept.get(key) != asked[key])
-            if different:
-                raise gloam.UsageError(f"{out} holds another benchmark ({', '.join(different)} differ)", hint="choose another folder")
-        asked |= {"machine": _machine(), "version": gloam.__version__, "started": time.strftime("%Y-%m-%d")}
-        part = file.with_suffix(".part")
-        part.write_text(json.dumps(asked, indent=1) + "\n", encoding="utf-8")
-        part.rename(file)
+        request.keep(out)
         yield
-
-
-def _machine() -> str:
-    try:
-        lines = Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines()
-        name = next(line.split(":", 1)[1].strip() for line in lines if line.startswith("model name"))
-    except (OSError, StopIteration):
-        name = platform.processor() or platform.machine()
-    return f"{name}, {os.cpu_count()} processors"
 
 
 @lru_cache(maxsize=1)

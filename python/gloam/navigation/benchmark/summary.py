@@ -8,7 +8,8 @@ from dataclasses import dataclass, replace
 from itertools import combinations
 from typing import Literal
 
-from .results import Episode, Key, Results
+from .key import Key
+from .results import Episode, Results
 from .statistics import Estimate, bootstrap_mean, generator, holm, mcnemar, sign_flip, wilson
 
 
