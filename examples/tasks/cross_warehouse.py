@@ -14,7 +14,7 @@ from pathlib import Path
 import gloam
 import numpy as np
 from dynamic_window import RADIUS, DynamicWindow
-from gloam.navigation.free_space import FreeSpace
+from gloam.navigation.free_space import free_space
 from route import Points, Pursuit, bearing, shortest
 
 LIDAR_AT = np.array([-0.045, 0.0])  # in the base's frame [m]
@@ -60,7 +60,7 @@ def prepare(seed: int, level: str) -> tuple[gloam.Scene, Points]:
     """The scene with the crowd, start and goal of a seed, and the route on the plan of the empty hall."""
     scene = gloam.Scene(Path(__file__).with_name("crowded_warehouse.toml"))
     empty = gloam.Scene.from_dict({"environment": {"warehouse": dict(scene["environment.warehouse"])}})
-    space = FreeSpace.of(empty.compile(), (), 0.35, heights=(0.03, 0.5))
+    space = free_space(empty.compile(), (), 0.35, heights=(0.03, 0.5))
     rng = np.random.default_rng(seed)
     left = space.origin[0] + space.cell * np.arange(space.blocked.shape[1])
     ends = []

@@ -3,20 +3,19 @@
 from __future__ import annotations
 
 import numpy as np
-from gloam.navigation.free_space import FreeSpace
+from gloam.navigation.grid import Grid
 from numpy.typing import ArrayLike, NDArray
 
 Points = NDArray[np.float64]
 
 
-def nearest_free(space: FreeSpace, point: ArrayLike) -> Points:
+def nearest_free(space: Grid, point: ArrayLike) -> Points:
     """The middle of the free cell nearest to (x, y) [m]."""
-    rows, columns = np.nonzero(~space.blocked)
-    cells = space.origin + space.cell * np.column_stack([columns, rows])
+    cells = space.middles(~space.blocked)
     return np.asarray(cells[np.argmin(np.linalg.norm(cells - np.asarray(point)[:2], axis=1))])
 
 
-def shortest(space: FreeSpace, start: ArrayLike, goal: ArrayLike) -> Points:
+def shortest(space: Grid, start: ArrayLike, goal: ArrayLike) -> Points:
     """The shortest way over the grid from one (x, y) to another, (n, 2) [m]: downhill in the distance to the goal."""
     field = np.pad(space.distances(nearest_free(space, goal)), 1, constant_values=np.inf)
     row, column = space.index(nearest_free(space, start))

@@ -13,7 +13,7 @@ from pathlib import Path
 
 import gloam
 import numpy as np
-from gloam.navigation.free_space import FreeSpace
+from gloam.navigation.free_space import free_space
 from route import Points, Pursuit, bearing, nearest_free, shortest
 
 SPEED, AHEAD, RADIUS = 0.7, 0.45, 0.3  # m/s, m, m: of walking, of pure pursuit, between the route and obstacles
@@ -26,7 +26,7 @@ class House:
     def __init__(self, scene: gloam.Scene) -> None:
         world = scene.compile()
         movable = {i for i, name in enumerate(world.bodies) if name.startswith("go/") or name == "bin"}
-        self.space = FreeSpace.of(world, movable, RADIUS, heights=(0.03, 0.5), cell=0.05)
+        self.space = free_space(world, movable, RADIUS, heights=(0.03, 0.5), cell=0.05)
         with gloam.Simulation(world) as sim:
             names = [name[: -len("/leaf")] for name in world.bodies if name.endswith("/leaf")]
             doors = [sim.bodies[name].pose for name in names]
@@ -45,10 +45,9 @@ class House:
     def _in_view_of(self, start: Points) -> Points:
         """The farthest free point within 3.5 m to which the way is straight, so it is in the same room."""
         field = self.space.distances(start)
-        rows, columns = np.nonzero(field < 3.5)
-        points = self.space.origin + self.space.cell * np.column_stack([columns, rows])
-        straight = field[rows, columns] < 1.09 * np.linalg.norm(points - start, axis=1)
-        return np.asarray(points[straight][np.argmax(field[rows, columns][straight])])
+        points, lengths = self.space.middles(field < 3.5), field[field < 3.5]
+        straight = lengths < 1.09 * np.linalg.norm(points - start, axis=1)
+        return np.asarray(points[straight][np.argmax(lengths[straight])])
 
 
 def prepare(seed: int) -> tuple[gloam.Scene, House]:

@@ -13,40 +13,15 @@ import numpy as np
 import pytest
 from gloam.navigation import Arrived, Observation, Planner, Task, Velocity, register_planner
 from gloam.navigation.benchmark.episode import EpisodeSpec, Touched, Watch, run_episode
-from gloam.navigation.benchmark.places import LEVELS, ROBOT, Course, Pair, scene_of, smoothed
+from gloam.navigation.benchmark.places import LEVELS, ROBOT, Course, Pair, scene_of
 from gloam.navigation.benchmark.request import REQUEST_FILE, Request
 from gloam.navigation.benchmark.runner import run
-from gloam.navigation.grid import Grid, length_of, point_ahead
-from gloam.navigation.window import DynamicWindow, WindowOptions
 from navigation_replay import measured
 
 
 @pytest.fixture(scope="module")
 def course() -> Course:
     return Course("house")
-
-
-def test_paths_go_around_walls() -> None:
-    blocked = np.zeros((11, 11), bool)
-    blocked[5, :8] = True
-    grid = Grid((0.0, 0.0), 0.1, blocked)
-    path = grid.path((0.0, 0.0), (0.0, 1.0))
-    assert path[0] == (0.0, 0.0) and path[-1] == (0.0, 1.0)
-    assert max(x for x, _ in path) == pytest.approx(0.8)
-    assert length_of(path) == pytest.approx(2 * (0.4 + 0.4 * math.sqrt(2) + 0.1), abs=0.2)
-    blocked[5, :] = True
-    assert Grid((0.0, 0.0), 0.1, blocked).path((0.0, 0.0), (0.0, 1.0)) == []
-    assert point_ahead([(0.0, 0.0), (1.0, 0.0), (2.0, 0.0)], (0.9, 0.3), 0.5) == (2.0, 0.0)
-    assert grid.clearance(0.3)[3, 0] == pytest.approx(0.2)
-
-
-def test_the_window_avoids_obstacles_and_turns_to_the_target() -> None:
-    window = DynamicWindow(WindowOptions())
-    free = window.choose((1.0, 0.0), np.empty((0, 2)))
-    assert free.vx == pytest.approx(0.4) and abs(free.yaw_rate) < 0.1
-    assert window.choose((-1.0, 0.3), np.empty((0, 2))).yaw_rate > 0.5
-    wall = np.stack([np.full(60, 0.5), np.linspace(-1.5, 1.5, 60)], axis=-1)
-    assert window.choose((2.0, 0.0), wall).vx < 0.2
 
 
 def test_pairs_are_reachable_at_every_level_and_shared(course: Course) -> None:
@@ -66,11 +41,6 @@ def test_pairs_are_reachable_at_every_level_and_shared(course: Course) -> None:
         course.pair(1, reach=(500.0, 600.0))
     with pytest.raises(gloam.NotFoundError, match="there is no scene 'home'"):
         scene_of("home", "none")
-
-
-def test_smoothing_keeps_the_ends() -> None:
-    corner = [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0)]
-    assert smoothed(corner)[0] == (0.0, 0.0) and smoothed(corner)[-1] == (1.0, 1.0)
 
 
 def test_an_episode_repeats_and_is_measured_again_from_its_log(course: Course, tmp_path: Path) -> None:

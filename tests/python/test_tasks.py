@@ -7,11 +7,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from gloam.navigation.grid import Grid
 
-pytest.importorskip("gymnasium")
-from gloam.navigation.free_space import FreeSpace  # noqa: E402
-
-import gloam  # noqa: E402
+import gloam
 
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "examples" / "tasks"))
@@ -19,11 +17,11 @@ import cross_warehouse  # noqa: E402
 import route  # noqa: E402
 
 
-def two_rooms() -> FreeSpace:
+def two_rooms() -> Grid:
     """4 x 2 m in cells of 0.1 m; a wall at x = 2 m with an opening above y = 1.5 m."""
     blocked = np.zeros((20, 40), dtype=bool)
     blocked[:15, 20] = True
-    return FreeSpace((0.0, 0.0), 0.1, blocked)
+    return Grid((0.0, 0.0), 0.1, blocked)
 
 
 def test_the_shortest_way_leads_through_the_opening() -> None:

@@ -15,17 +15,17 @@ import pytest
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 
 import gloam  # noqa: E402
-from gloam.navigation.free_space import FreeSpace  # noqa: E402
+from gloam.navigation.grid import Grid  # noqa: E402
 from training.navigation import labels, pairs, paths, publish, render_all, routes, scenes  # noqa: E402
 
 
-def two_rooms() -> FreeSpace:
+def two_rooms() -> Grid:
     """A floor of 10 x 6 m with a wall at x = 5 m and a door of 1.4 m."""
     blocked = np.zeros((61, 101), bool)
     blocked[0], blocked[-1], blocked[:, 0], blocked[:, -1] = True, True, True, True
     blocked[:, 49:52] = True
     blocked[23:37, 49:52] = False
-    return FreeSpace((0.0, 0.0), 0.1, blocked)
+    return Grid((0.0, 0.0), 0.1, blocked)
 
 
 def straight() -> labels.Path:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from gloam.navigation.free_space import FreeSpace
+from gloam.navigation.grid import Grid
 
 from .labels import SPACING, Path, waypoints, wrap
 
@@ -37,7 +37,7 @@ class Pairs:
     action: NDArray[np.float32]
 
 
-def pairs_of(poses: Array, space: FreeSpace, rng: np.random.Generator, rule: PairRule) -> Pairs:
+def pairs_of(poses: Array, space: Grid, rng: np.random.Generator, rule: PairRule) -> Pairs:
     """Pairs of the views of one place, which have poses (n, 3) x, y, yaw [m, rad]. Straight ways lie in the free space."""
     anchors, goals = [], []
     for anchor in range(len(poses)):
@@ -60,6 +60,6 @@ def pairs_of(poses: Array, space: FreeSpace, rng: np.random.Generator, rule: Pai
     )
 
 
-def _is_free(space: FreeSpace, start: Array, offset: Array) -> bool:
+def _is_free(space: Grid, start: Array, offset: Array) -> bool:
     count = int(np.ceil(np.hypot(*offset) / space.cell)) + 1
-    return all(space.is_free(start + share * offset) for share in np.linspace(0.0, 1.0, count))
+    return bool(space.are_free(start + np.linspace(0.0, 1.0, count)[:, None] * offset).all())

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import heapq
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from gloam.navigation.free_space import FreeSpace
+from gloam.navigation.grid import Grid
+from gloam.navigation.paths import smoothed
 
 from .labels import Path
 
@@ -30,71 +30,18 @@ class Deviation:
     start_turn: float = 2.0
 
 
-def clearance(space: FreeSpace, limit: float = _COMFORT) -> Array:
-    """Distance of each cell from the nearest blocked cell or border, over 8 neighbours, up to `limit` [m]."""
-    field: Array = np.where(space.blocked, 0.0, limit)
-    for _ in range(int(np.ceil(limit / space.cell))):
-        padded = np.pad(field, 1, constant_values=0.0)
-        for dy in (0, 1, 2):
-            for dx in (0, 1, 2):
-                length = space.cell * float(np.hypot(dy - 1, dx - 1))
-                field = np.minimum(field, padded[dy : dy + field.shape[0], dx : dx + field.shape[1]] + length)
-    return field
-
-
-def plan(space: FreeSpace, start: Array, goal: Array) -> Path | None:
+def plan(space: Grid, start: Array, goal: Array) -> Path | None:
     """The path of the least length and cost of walls between two points (x, y) [m]; None if there is none."""
-    cost = 1.0 + _WALL_COST * (1.0 - clearance(space) / _COMFORT) ** 2
-    cells = _search(cost, space.blocked, space.index(start), space.index(goal))
+    cells = space.path(start, goal, space.wall_cost(_COMFORT, _WALL_COST))
     if len(cells) < 3:
         return None
-    points = space.origin + space.cell * np.array(cells, dtype=np.float64)[:, ::-1]
-    return Path(_resampled(_smooth(space, _resampled(points, 0.05)), 0.05))
+    fine = smoothed(_resampled(Path(np.array(cells))), 80, space)
+    return Path(_resampled(Path(np.array(fine))))
 
 
-def _search(cost: Array, blocked: Array, start: tuple[int, int], goal: tuple[int, int]) -> list[tuple[int, int]]:
-    """Cells (row, column) from start to goal by Dijkstra's algorithm; empty if there are none."""
-    best, before = {start: 0.0}, {start: start}
-    queue = [(0.0, start)]
-    steps = [(dy, dx, float(np.hypot(dy, dx))) for dy in (-1, 0, 1) for dx in (-1, 0, 1) if dy or dx]
-    rows, columns = blocked.shape
-    while queue:
-        length, cell = heapq.heappop(queue)
-        if cell == goal:
-            cells = [cell]
-            while cells[-1] != start:
-                cells.append(before[cells[-1]])
-            return cells[::-1]
-        if length > best[cell]:
-            continue
-        for dy, dx, step in steps:
-            row, column = cell[0] + dy, cell[1] + dx
-            if not (0 <= row < rows and 0 <= column < columns) or blocked[row, column]:
-                continue
-            total = length + step * 0.5 * float(cost[cell] + cost[row, column])
-            if total < best.get((row, column), np.inf):
-                best[row, column], before[row, column] = total, cell
-                heapq.heappush(queue, (total, (row, column)))
-    return []
-
-
-def _resampled(points: Array, spacing: float) -> Array:
-    """Points at equal distances of about `spacing` along a polyline [m]."""
-    points = points[np.concatenate([[True], np.linalg.norm(np.diff(points, axis=0), axis=1) > 1e-9])]
-    arc = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))])
-    along = np.linspace(0.0, arc[-1], max(int(round(arc[-1] / spacing)), 1) + 1)
-    return np.stack([np.interp(along, arc, points[:, k]) for k in range(2)], axis=-1)
-
-
-def _smooth(space: FreeSpace, points: Array, rounds: int = 80) -> Array:
-    """The polyline without the corners of the grid; points that would leave the free space stay."""
-    points = points.copy()
-    for _ in range(rounds):
-        moved = 0.25 * points[:-2] + 0.5 * points[1:-1] + 0.25 * points[2:]
-        for index, point in enumerate(moved, start=1):
-            if space.is_free(point):
-                points[index] = point
-    return points
+def _resampled(path: Path) -> Array:
+    """Points of the path at equal distances of about 0.05 m."""
+    return path.at(np.linspace(0.0, path.length, max(round(path.length / 0.05), 1) + 1))
 
 
 def nominal_drive(path: Path) -> tuple[Array, Array]:
@@ -104,7 +51,7 @@ def nominal_drive(path: Path) -> tuple[Array, Array]:
 
 
 def deviating_drive(
-    path: Path, space: FreeSpace, rng: np.random.Generator, deviation: Deviation
+    path: Path, space: Grid, rng: np.random.Generator, deviation: Deviation
 ) -> tuple[Array, Array]:
     """Poses (n, 3) of a drive that strays from the path, and their progress on it (n,) [m].
 

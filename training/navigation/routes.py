@@ -18,7 +18,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 import gloam
-from gloam.navigation.free_space import FreeSpace
+from gloam.navigation.free_space import free_space, shared_space
+from gloam.navigation.grid import Grid
 
 from .labels import Path, waypoints
 from .pairs import PairRule, Pairs, pairs_of
@@ -53,7 +54,7 @@ def joined(parts: Sequence[Table]) -> Table:
     return kind(*(np.concatenate([getattr(part, field.name) for part in parts]) for field in fields(kind)))
 
 
-def route_views(path: Path, space: FreeSpace, rng: np.random.Generator, place: int, route: int) -> Views:
+def route_views(path: Path, space: Grid, rng: np.random.Generator, place: int, route: int) -> Views:
     """Views of two drives of a path: on it, and straying from it."""
     parts = []
     for drive in (0, 1):
@@ -73,7 +74,7 @@ def route_views(path: Path, space: FreeSpace, rng: np.random.Generator, place: i
     return joined(parts)
 
 
-def place_views(space: FreeSpace, views: int, place: int, first_route: int, seed: int) -> Views:
+def place_views(space: Grid, views: int, place: int, first_route: int, seed: int) -> Views:
     """Views of as many random routes as give at least `views`; UsageError if no path of LENGTHS is found."""
     rng = np.random.default_rng((seed, place))
     parts: list[Views] = []
@@ -95,17 +96,10 @@ def place_views(space: FreeSpace, views: int, place: int, first_route: int, seed
     return joined(parts)
 
 
-def shared_space(place: Place, folder: File) -> FreeSpace:
-    """Free space of a place that is free in every condition. Errors: of gloam."""
-    spaces = []
-    for condition in CONDITIONS:
-        world = gloam.Scene.parse(place_toml(place, condition), folder).compile()
-        spaces.append(FreeSpace.of(world, (), RADIUS))
-    first = spaces[0]
-    if any(space.blocked.shape != first.blocked.shape for space in spaces):
-        raise gloam.UsageError("the floors differ between the conditions")
-    blocked = np.logical_or.reduce([space.blocked for space in spaces])
-    return FreeSpace((float(first.origin[0]), float(first.origin[1])), first.cell, blocked)
+def space_of(place: Place, folder: File) -> Grid:
+    """Floor of a place that is free in every condition. Errors: of gloam."""
+    worlds = [gloam.Scene.parse(place_toml(place, condition), folder).compile() for condition in CONDITIONS]
+    return shared_space([free_space(world, (), RADIUS) for world in worlds])
 
 
 def write_place(place: Place, views: Views, folder: File, seed: int) -> None:
@@ -133,7 +127,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
         begin = time.monotonic()
         try:
             first = int(parts[-1].route.max()) + 1 if parts else 0
-            space = shared_space(place, scenes)
+            space = space_of(place, scenes)
             views = place_views(space, options.views, len(parts), first, options.seed)
         except gloam.Error as error:
             print(f"{place.name}: skipped: {error}", flush=True)
@@ -148,7 +142,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
         (options.out / "places.json").write_text(json.dumps(names))
 
 
-def place_pairs(views: Views, space: FreeSpace, first: int, seed: int) -> Pairs:
+def place_pairs(views: Views, space: Grid, first: int, seed: int) -> Pairs:
     """Pairs of the views of a place, whose first row in the table of all places is `first`."""
     rng = np.random.default_rng((seed, first))
     pairs = pairs_of(views.pose.astype(np.float64), space, rng, PairRule())

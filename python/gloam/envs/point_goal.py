@@ -17,11 +17,12 @@ from gymnasium import spaces
 
 import gloam
 from gloam.envs.assets import asset_folder
-from gloam.navigation.free_space import FreeSpace
 from gloam.envs.noise import Array
 from gloam.envs.sources import CameraSource, LidarSource
 from gloam.envs.task import Outcome, SceneSource, Task, TaskWorld
 from gloam.envs.terms import Term
+from gloam.navigation.free_space import free_space, robot_bodies
+from gloam.navigation.grid import Grid
 
 Place = Literal["arena", "house"]
 Sight = Literal["image", "depth", "lidar"]
@@ -72,7 +73,7 @@ class PointGoal(Task):
         # The first scan begins where the cart was before it was placed.
         self.settle = 2 * self.control_interval if observation == "lidar" else 0.0
         self._lock = threading.Lock()
-        self._space: FreeSpace | None = None
+        self._space: Grid | None = None
 
     def scene(self) -> SceneSource:
         is_house = self.place == "house"
@@ -139,17 +140,16 @@ class PointGoal(Task):
     def bind(self, sim: gloam.Simulation) -> TaskWorld:
         return _PointGoalWorld(sim, self, self.free_space(sim.world))
 
-    def free_space(self, world: gloam.World) -> FreeSpace:
+    def free_space(self, world: gloam.World) -> Grid:
         """Free space of the cart; computed once."""
         with self._lock:
             if self._space is None:
-                cart = {number for number, name in enumerate(world.bodies) if name.startswith("cart/")}
-                self._space = FreeSpace.of(world, cart, FOOTPRINT)
+                self._space = free_space(world, robot_bodies(world, "cart"), FOOTPRINT)
             return self._space
 
 
 class _PointGoalWorld(TaskWorld):
-    def __init__(self, sim: gloam.Simulation, task: PointGoal, space: FreeSpace) -> None:
+    def __init__(self, sim: gloam.Simulation, task: PointGoal, space: Grid) -> None:
         super().__init__(sim)
         self._task, self._space = task, space
         self._cart = sim.robots["cart"]
@@ -212,7 +212,7 @@ class _PointGoalWorld(TaskWorld):
         self._source.close()
 
 
-def _point(value: object, size: int, space: FreeSpace) -> Array:
+def _point(value: object, size: int, space: Grid) -> Array:
     """Numbers from an option of reset. Errors: ValueError for another count, NaN, or a place that is not free."""
     point = np.asarray(value, dtype=np.float64)
     if point.shape != (size,) or not np.isfinite(point).all():

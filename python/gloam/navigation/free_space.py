@@ -1,139 +1,65 @@
-"""Free space on a floor, and lengths of paths around obstacles to a goal."""
+"""Free space on the floor of a World."""
 
 from __future__ import annotations
 
 import re
-from collections.abc import Collection
+from collections.abc import Collection, Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 import gloam
-from gloam.navigation.planner import Array
+
+from .grid import Grid
+from .planner import Array
 
 _PLANE, _HFIELD = 0, 1  # mjtGeom
 _FLOOR = re.compile(r"/floor_\d+/")  # of generated places
 
 
-class FreeSpace:
-    """A grid of the floor: cells are free where a disc of `radius` fits.
+def free_space(
+    world: gloam.World,
+    ignore: Collection[int],
+    radius: float,
+    heights: tuple[float, float] = (0.03, 0.4),
+    cell: float = 0.1,
+) -> Grid:
+    """The largest connected free region of a World at its initial state: cells are free where a disc of `radius` fits.
 
-    origin: (x, y) of the middle of cell [0, 0] [m]; cell: their side [m]; blocked: [row along y, column along x].
-    Obstacles are approximated by their bounding boxes at the initial state.
+    ignore: bodies that are not obstacles (MuJoCo ids); radius, cell: [m]; heights: geoms entirely below or above them
+    are not obstacles [m]. Obstacles are approximated by their bounding boxes. In generated places only the floors are
+    free space. Errors: UsageError if there are no walls, or no room between them.
     """
+    boxes, floors = _boxes(world, ignore, heights)
+    corners = (floors if len(floors) > 0 else boxes).reshape(-1, 2)
+    if len(corners) == 0:
+        raise gloam.UsageError("the scene has no walls, so the extent of its floor is unknown")
+    low, high = corners.min(axis=0), corners.max(axis=0)
+    columns, rows = (np.ceil((high - low) / cell).astype(int) + 1).tolist()
+    x = low[0] + cell * np.arange(columns)
+    y = low[1] + cell * np.arange(rows)
+    points = np.stack(np.meshgrid(x, y), axis=-1)
+    blocked = np.full((rows, columns), len(floors) > 0)
+    for floor in floors:
+        blocked &= _distance_to_box(points, floor) > 0.5 * cell
+    for box in boxes:
+        blocked |= _distance_to_box(points, box) < radius
+    grid = Grid(low, cell, blocked)
+    grid.keep_largest_region()
+    return grid
 
-    def __init__(self, origin: tuple[float, float], cell: float, blocked: NDArray[np.bool_]) -> None:
-        self.origin = np.asarray(origin, dtype=np.float64)
-        self.cell = cell
-        self.blocked = blocked
 
-    @classmethod
-    def of(
-        cls,
-        world: gloam.World,
-        ignore: Collection[int],
-        radius: float,
-        heights: tuple[float, float] = (0.03, 0.4),
-        cell: float = 0.1,
-    ) -> FreeSpace:
-        """The largest connected free region of a World.
+def shared_space(grids: Sequence[Grid]) -> Grid:
+    """The largest region that is free in each of several grids of one floor, such as under all levels of adversity.
 
-        ignore: bodies that are not obstacles (MuJoCo ids); radius, cell: [m]; heights: geoms entirely below or above
-        them are not obstacles [m]. In generated places only the floors are free space. Errors: UsageError if there
-        are no walls, or no room between them.
-        """
-        boxes, floors = _boxes(world, ignore, heights)
-        corners = (floors if len(floors) > 0 else boxes).reshape(-1, 2)
-        if len(corners) == 0:
-            raise gloam.UsageError("the scene has no walls, so the extent of its floor is unknown")
-        low, high = corners.min(axis=0), corners.max(axis=0)
-        columns, rows = (np.ceil((high - low) / cell).astype(int) + 1).tolist()
-        x = low[0] + cell * np.arange(columns)
-        y = low[1] + cell * np.arange(rows)
-        points = np.stack(np.meshgrid(x, y), axis=-1)
-        blocked = np.full((rows, columns), len(floors) > 0)
-        for floor in floors:
-            blocked &= _distance_to_box(points, floor) > 0.5 * cell
-        for box in boxes:
-            blocked |= _distance_to_box(points, box) < radius
-        space = cls((float(low[0]), float(low[1])), cell, blocked)
-        space.keep_largest_region()
-        return space
-
-    def keep_largest_region(self) -> None:
-        """Blocks all cells outside the largest connected region. Errors: UsageError if no cell is free."""
-        left = ~self.blocked
-        best = np.zeros_like(left)
-        while left.any():
-            row, column = np.argwhere(left)[0]
-            region = np.isfinite(self.distances(self.origin + self.cell * np.array([column, row])))
-            left &= ~region
-            if region.sum() > best.sum():
-                best = region
-        if not best.any():
-            raise gloam.UsageError("the scene has no free space")
-        self.blocked = ~best
-
-    def index(self, point: Array) -> tuple[int, int]:
-        """Row and column of the cell that holds (x, y) [m], moved into the grid."""
-        column, row = np.rint((np.asarray(point)[:2] - self.origin) / self.cell).astype(int)
-        rows, columns = self.blocked.shape
-        return int(np.clip(row, 0, rows - 1)), int(np.clip(column, 0, columns - 1))
-
-    def is_free(self, point: Array) -> bool:
-        """Whether (x, y) [m] is inside and free."""
-        offset = (np.asarray(point)[:2] - self.origin) / self.cell
-        rows, columns = self.blocked.shape
-        if (offset < -0.5).any() or offset[0] > columns - 0.5 or offset[1] > rows - 0.5:
-            return False
-        return not self.blocked[self.index(point)]
-
-    def distances(self, goal: Array) -> Array:
-        """Length of the path from the middle of each cell to (x, y) [m], over the grid's 8 neighbours; inf: no path.
-
-        At most 8 % longer than the shortest path, as in all such grids.
-        """
-        field: Array = np.full(self.blocked.shape, np.inf)
-        field[self.index(goal)] = 0.0
-        free = ~self.blocked
-        while True:
-            padded: Array = np.pad(field, 1, constant_values=np.inf)
-            best: Array = field
-            for dy in (0, 1, 2):
-                for dx in (0, 1, 2):
-                    length = self.cell * np.hypot(dy - 1, dx - 1)
-                    best = np.minimum(best, padded[dy : dy + field.shape[0], dx : dx + field.shape[1]] + length)
-            best = np.where(free, best, field)
-            if np.array_equal(best, field):
-                return field
-            field = best
-
-    def distance(self, field: Array, point: Array) -> float:
-        """Length of the path from (x, y) [m], from the `distances` of a goal over the nearest cells; inf: no path."""
-        row, column = self.index(point)
-        rows = slice(max(row - 2, 0), row + 3)
-        columns = slice(max(column - 2, 0), column + 3)
-        x = self.origin[0] + self.cell * np.arange(columns.start, min(columns.stop, field.shape[1]))
-        y = self.origin[1] + self.cell * np.arange(rows.start, min(rows.stop, field.shape[0]))
-        steps = np.hypot(y[:, None] - float(point[1]), x[None, :] - float(point[0]))
-        near: Array = field[rows][:, columns]
-        return float((near + steps).min())
-
-    def sample(
-        self, rng: np.random.Generator, field: Array | None = None, reach: tuple[float, float] = (0, 0)
-    ) -> Array:
-        """A free point (x, y) [m]; with `field`, a point whose path to the field's goal is within `reach` [m].
-
-        Errors: UsageError if there is none.
-        """
-        usable = ~self.blocked
-        if field is not None:
-            usable = usable & (field >= reach[0]) & (field <= reach[1])
-        cells = np.argwhere(usable)
-        if len(cells) == 0:
-            raise gloam.UsageError(f"there is no free place {reach[0]} to {reach[1]} m from the goal")
-        row, column = cells[rng.integers(len(cells))]
-        return self.origin + self.cell * np.array([column, row], dtype=np.float64)
+    Errors: UsageError if the grids differ in origin, cell or shape, or share no free cell.
+    """
+    first = grids[0]
+    for grid in grids[1:]:
+        if grid.cell != first.cell or grid.blocked.shape != first.blocked.shape or not np.allclose(grid.origin, first.origin):
+            raise gloam.UsageError("the floors differ")
+    shared = Grid(first.origin, first.cell, np.logical_or.reduce([grid.blocked for grid in grids]))
+    shared.keep_largest_region()
+    return shared
 
 
 def robot_bodies(world: gloam.World, robot: str) -> list[int]:

@@ -1,4 +1,4 @@
-"""Paths on a grid of free and blocked cells: A* with a cost near obstacles."""
+"""Grids of free and blocked cells on a floor: clearance, distances to a goal, and A* with a cost near obstacles."""
 
 from __future__ import annotations
 
@@ -6,31 +6,66 @@ import heapq
 import math
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
+import gloam
+
+from .paths import Point
 from .planner import Array
 
-Point = tuple[float, float]
 _STEPS = [(dy, dx, math.hypot(dy, dx)) for dy in (-1, 0, 1) for dx in (-1, 0, 1) if dy or dx]
+_Cell = tuple[int, int]
 
 
 class Grid:
     """Cells of side `cell` [m]; origin: (x, y) of the middle of cell [0, 0] [m]; blocked: (rows along y, columns
     along x)."""
 
-    def __init__(self, origin: Point, cell: float, blocked: NDArray[np.bool_]) -> None:
-        self.origin, self.cell, self.blocked = origin, cell, blocked
+    def __init__(self, origin: ArrayLike, cell: float, blocked: NDArray[np.bool_]) -> None:
+        self.origin: Array = np.asarray(origin, dtype=np.float64)
+        self.cell = cell
+        self.blocked = blocked
 
-    def index(self, point: Point) -> tuple[int, int]:
-        """Row and column of the cell that holds the point, moved into the grid."""
+    def index(self, point: ArrayLike) -> _Cell:
+        """Row and column of the cell that holds (x, y) [m], moved into the grid."""
+        column, row = np.rint(self._offsets(point)).astype(int)
         rows, columns = self.blocked.shape
-        column = round((point[0] - self.origin[0]) / self.cell)
-        row = round((point[1] - self.origin[1]) / self.cell)
-        return min(max(row, 0), rows - 1), min(max(column, 0), columns - 1)
+        return int(np.clip(row, 0, rows - 1)), int(np.clip(column, 0, columns - 1))
 
-    def middle(self, row: int, column: int) -> Point:
-        """(x, y) of the middle of a cell [m]."""
-        return self.origin[0] + self.cell * column, self.origin[1] + self.cell * row
+    def middles(self, where: NDArray[np.bool_]) -> Array:
+        """(x, y) of the middles of the cells where a mask of the grid's shape is true, row by row, (n, 2) [m]."""
+        row, column = np.nonzero(where)
+        return self.origin + self.cell * np.stack([column, row], axis=-1)
+
+    def is_free(self, point: ArrayLike) -> bool:
+        """Whether (x, y) [m] is inside and free."""
+        return bool(self.are_free(np.asarray(point)[None]).all())
+
+    def are_free(self, points: ArrayLike) -> NDArray[np.bool_]:
+        """Whether points (n, 2) [m] are inside and free, (n,)."""
+        offsets = self._offsets(points)
+        last = np.array(self.blocked.shape[::-1]) - 1
+        inside = (offsets >= -0.5).all(axis=1) & (offsets <= last + 0.5).all(axis=1)
+        column, row = np.clip(np.rint(offsets).astype(int), 0, last).T
+        return np.asarray(inside & ~self.blocked[row, column])
+
+    def _offsets(self, points: ArrayLike) -> Array:
+        """Columns and rows of points, with fractions."""
+        return np.asarray((np.asarray(points, dtype=np.float64)[..., :2] - self.origin) / self.cell)
+
+    def keep_largest_region(self) -> None:
+        """Blocks all cells outside the largest connected region. Errors: UsageError if no cell is free."""
+        left = ~self.blocked
+        best = np.zeros_like(left)
+        while left.any():
+            row, column = np.argwhere(left)[0]
+            region = np.isfinite(self.distances(self.origin + self.cell * np.array([column, row])))
+            left &= ~region
+            if region.sum() > best.sum():
+                best = region
+        if not best.any():
+            raise gloam.UsageError("the scene has no free space")
+        self.blocked = ~best
 
     def clearance(self, most: float) -> Array:
         """Distance of each cell to the nearest blocked one, at most `most` [m]; chessboard steps, so up to 30 % short."""
@@ -43,7 +78,57 @@ class Grid:
             distance = np.where(near & (distance > k * self.cell), k * self.cell, distance)
         return distance
 
-    def path(self, start: Point, goal: Point, cost: Array | None = None) -> list[Point]:
+    def wall_cost(self, reach: float, most: float) -> Array:
+        """Cost of a metre for path(): `most` at obstacles, less with the square of the way to 0 at `reach` [m]."""
+        return most * (1.0 - self.clearance(reach) / reach) ** 2
+
+    def distances(self, goal: ArrayLike) -> Array:
+        """Length of the path from the middle of each cell to (x, y) [m], over the grid's 8 neighbours; inf: no path.
+
+        At most 8 % longer than the shortest path, as in all such grids.
+        """
+        field: Array = np.full(self.blocked.shape, np.inf)
+        field[self.index(goal)] = 0.0
+        free = ~self.blocked
+        while True:
+            padded: Array = np.pad(field, 1, constant_values=np.inf)
+            best: Array = field
+            for dy in (0, 1, 2):
+                for dx in (0, 1, 2):
+                    length = self.cell * np.hypot(dy - 1, dx - 1)
+                    best = np.minimum(best, padded[dy : dy + field.shape[0], dx : dx + field.shape[1]] + length)
+            best = np.where(free, best, field)
+            if np.array_equal(best, field):
+                return field
+            field = best
+
+    def distance(self, field: Array, point: ArrayLike) -> float:
+        """Length of the path from (x, y) [m], from the `distances` of a goal over the nearest cells; inf: no path."""
+        x, y = np.asarray(point, dtype=np.float64)[:2]
+        row, column = self.index(point)
+        rows = slice(max(row - 2, 0), row + 3)
+        columns = slice(max(column - 2, 0), column + 3)
+        across = self.origin[0] + self.cell * np.arange(columns.start, min(columns.stop, field.shape[1]))
+        along = self.origin[1] + self.cell * np.arange(rows.start, min(rows.stop, field.shape[0]))
+        steps = np.hypot(along[:, None] - y, across[None, :] - x)
+        near: Array = field[rows][:, columns]
+        return float((near + steps).min())
+
+    def sample(self, rng: np.random.Generator, field: Array | None = None, reach: tuple[float, float] = (0, 0)) -> Array:
+        """A free point (x, y) [m]; with `field`, a point whose path to the field's goal is within `reach` [m].
+
+        Errors: UsageError if there is none.
+        """
+        usable = ~self.blocked
+        if field is not None:
+            usable = usable & (field >= reach[0]) & (field <= reach[1])
+        points = self.middles(usable)
+        if len(points) == 0:
+            raise gloam.UsageError(f"there is no free place {reach[0]} to {reach[1]} m from the goal")
+        point: Array = points[rng.integers(len(points))]
+        return point
+
+    def path(self, start: ArrayLike, goal: ArrayLike, cost: Array | None = None) -> list[Point]:
         """Middles of the cells of the cheapest path from start to goal [m], or [] if there is none.
 
         cost: (rows, columns), >= 0, added to each metre of the path. Blocked cells at the start are left, because a
@@ -52,9 +137,9 @@ class Grid:
         begin, end = self.index(start), self.index(goal)
         weights = 1.0 + (np.zeros(self.blocked.shape) if cost is None else cost)
         best = {begin: 0.0}
-        before: dict[tuple[int, int], tuple[int, int]] = {}
+        before: dict[_Cell, _Cell] = {}
         heap = [(0.0, begin)]
-        done: set[tuple[int, int]] = set()
+        done: set[_Cell] = set()
         while heap:
             _, here = heapq.heappop(heap)
             if here == end:
@@ -62,50 +147,31 @@ class Grid:
             if here in done:
                 continue
             done.add(here)
-            self._expand(here, end, weights, best, before, heap)
+            for there, length in self._neighbours(here, weights):
+                total = best[here] + length
+                if total < best.get(there, math.inf):
+                    best[there], before[there] = total, here
+                    ahead = self.cell * math.hypot(there[0] - end[0], there[1] - end[1])
+                    heapq.heappush(heap, (total + ahead, there))
         return []
 
-    def _expand(
-        self,
-        here: tuple[int, int],
-        end: tuple[int, int],
-        weights: Array,
-        best: dict[tuple[int, int], float],
-        before: dict[tuple[int, int], tuple[int, int]],
-        heap: list[tuple[float, tuple[int, int]]],
-    ) -> None:
+    def _neighbours(self, here: _Cell, weights: Array) -> list[tuple[_Cell, float]]:
+        """Cells that can be reached in a step, and the cost of each step. Only a blocked cell leads to blocked ones."""
         rows, columns = self.blocked.shape
         leaves = bool(self.blocked[here])
+        found = []
         for dy, dx, length in _STEPS:
             row, column = here[0] + dy, here[1] + dx
             if not (0 <= row < rows and 0 <= column < columns) or (self.blocked[row, column] and not leaves):
                 continue
-            total = best[here] + length * self.cell * float(weights[row, column]) * (5.0 if self.blocked[row, column] else 1.0)
-            if total < best.get((row, column), math.inf):
-                best[row, column] = total
-                before[row, column] = here
-                ahead = self.cell * math.hypot(row - end[0], column - end[1])
-                heapq.heappush(heap, (total + ahead, (row, column)))
+            penalty = 5.0 if self.blocked[row, column] else 1.0
+            found.append(((row, column), length * self.cell * float(weights[row, column]) * penalty))
+        return found
 
-    def _walk_back(self, before: dict[tuple[int, int], tuple[int, int]], here: tuple[int, int]) -> list[Point]:
+    def _walk_back(self, before: dict[_Cell, _Cell], here: _Cell) -> list[Point]:
         cells = [here]
         while here in before:
             here = before[here]
             cells.append(here)
-        return [self.middle(*cell) for cell in reversed(cells)]
-
-
-def length_of(path: list[Point]) -> float:
-    """Length of a path [m]."""
-    return sum(math.dist(a, b) for a, b in zip(path, path[1:], strict=False))
-
-
-def point_ahead(path: list[Point], position: Point, distance: float) -> Point:
-    """The point of a path that lies `distance` [m] behind the point nearest to a position, or its end."""
-    nearest = min(range(len(path)), key=lambda i: math.dist(path[i], position))
-    left = distance
-    for a, b in zip(path[nearest:], path[nearest + 1 :], strict=False):
-        left -= math.dist(a, b)
-        if left <= 0:
-            return b
-    return path[-1]
+        x, y = (float(value) for value in self.origin)
+        return [(x + self.cell * column, y + self.cell * row) for row, column in reversed(cells)]

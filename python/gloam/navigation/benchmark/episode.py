@@ -16,7 +16,7 @@ import numpy as np
 import gloam
 
 from ..driver import WATCH_PERIOD, Driver, Rig
-from ..grid import Point
+from ..paths import Point
 from ..planner import Task, make_planner
 from .demonstration import map_of
 from .key import Key

@@ -10,7 +10,8 @@ from numpy.typing import NDArray
 
 from gloam.errors import InputError
 
-from ..free_space import FreeSpace, robot_bodies
+from ..free_space import free_space, robot_bodies
+from ..grid import Grid
 from .files import replace_file
 from .places import PLACES, ROBOT, world_of
 
@@ -44,7 +45,7 @@ def plan_of(folder: Path, scene: str, level: str) -> FloorPlan | None:
     file = folder / "plans" / scene / f"{level}.npz"
     if not file.is_file():
         world = world_of(scene, level)
-        space = FreeSpace.of(world, robot_bodies(world, ROBOT), _ROBOT_RADIUS, cell=_CELL)
+        space = free_space(world, robot_bodies(world, ROBOT), _ROBOT_RADIUS, cell=_CELL)
         file.parent.mkdir(parents=True, exist_ok=True)
         replace_file(file, lambda path: _save(path, space))
     try:
@@ -55,6 +56,6 @@ def plan_of(folder: Path, scene: str, level: str) -> FloorPlan | None:
         raise InputError(f"this is not a floor plan: {error}", str(file), hint="delete it") from error
 
 
-def _save(path: Path, space: FreeSpace) -> None:
+def _save(path: Path, space: Grid) -> None:
     with path.open("wb") as file:
         np.savez_compressed(file, origin=np.asarray(space.origin), cell=space.cell, blocked=space.blocked)

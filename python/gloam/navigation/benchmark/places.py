@@ -11,8 +11,8 @@ import numpy as np
 
 import gloam
 
-from ..free_space import FreeSpace, robot_bodies
-from ..grid import Grid, Point, length_of
+from ..free_space import free_space, robot_bodies, shared_space
+from ..paths import Point, length_of, smoothed
 from ..planner import Array
 
 LEVELS = ("none", "minor", "major")
@@ -78,37 +78,23 @@ class Course:
     """Free space of a place that all levels share: clutter differs between levels."""
 
     def __init__(self, place: str, levels: tuple[str, ...] = LEVELS) -> None:
-        spaces = []
-        for level in levels:
-            world = world_of(place, level)
-            spaces.append(FreeSpace.of(world, robot_bodies(world, ROBOT), _CLEARANCE, cell=_CELL))
-        blocked = np.logical_or.reduce([space.blocked for space in spaces])
-        self._space = FreeSpace((float(spaces[0].origin[0]), float(spaces[0].origin[1])), _CELL, blocked)
-        self._space.keep_largest_region()
-        self.grid = Grid((float(spaces[0].origin[0]), float(spaces[0].origin[1])), _CELL, self._space.blocked)
+        worlds = [world_of(place, level) for level in levels]
+        self.grid = shared_space([free_space(world, robot_bodies(world, ROBOT), _CLEARANCE, cell=_CELL) for world in worlds])
         self._cost: Array = 2.0 * (1 - self.grid.clearance(0.5) / 0.5)
 
     def pair(self, seed: int, reach: tuple[float, float] = (4.0, 12.0)) -> Pair:
         """The pair of a seed, with a path of `reach` [m]. Errors: UsageError if the place has no such paths."""
         rng = np.random.Generator(np.random.Philox(key=seed))
         for _ in range(100):
-            goal = self._space.sample(rng)
-            field = self._space.distances(goal)
+            goal = self.grid.sample(rng)
+            field = self.grid.distances(goal)
             if ((field >= reach[0]) & (field <= reach[1])).any():
                 break
         else:
             raise gloam.UsageError(f"the place has no paths of {reach[0]} to {reach[1]} m")
-        start = self._space.sample(rng, field, reach)
+        start = self.grid.sample(rng, field, reach)
         begin, end = (float(start[0]), float(start[1])), (float(goal[0]), float(goal[1]))
         path = smoothed(self.grid.path(begin, end, self._cost))
         ahead = path[min(8, len(path) - 1)]
         yaw = math.atan2(ahead[1] - begin[1], ahead[0] - begin[0])
         return Pair((*begin, yaw), end, tuple(path), length_of(self.grid.path(begin, end)))
-
-
-def smoothed(path: list[Point], passes: int = 12) -> list[Point]:
-    """The same path without the corners of a grid: its ends stay."""
-    points = np.array(path)
-    for _ in range(passes):
-        points[1:-1] = 0.25 * points[:-2] + 0.5 * points[1:-1] + 0.25 * points[2:]
-    return [(float(x), float(y)) for x, y in points]

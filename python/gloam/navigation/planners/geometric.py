@@ -9,9 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 import gloam
-from gloam.navigation.free_space import FreeSpace, robot_bodies
 
-from ..grid import Grid, Point, point_ahead
+from ..free_space import free_space, robot_bodies
+from ..grid import Grid
+from ..paths import Point, point_ahead
 from ..planner import Answer, Arrived, Array, Need, Observation, Planner, Task, register_planner
 from ..window import DynamicWindow, WindowOptions
 
@@ -19,11 +20,7 @@ _LOOKAHEAD = 0.8  # of the point on the path that the window aims at [m]
 _CARE = 4.0  # cost of a metre at an obstacle, in metres
 
 
-def _careful(grid: Grid, reach: float = 0.4) -> Array:
-    return _CARE * (1 - grid.clearance(reach) / reach) ** 2
-
-
-def _local(points: Array, observation: Observation, reach: float = 2.0) -> Array:
+def _near(points: Array, observation: Observation, reach: float = 2.0) -> Array:
     """The points (n, 2) of the world within `reach` of the robot, in its frame [m]."""
     x, y, yaw = observation.pose
     near = points[np.hypot(points[:, 0] - x, points[:, 1] - y) < reach] - (x, y)
@@ -40,7 +37,7 @@ class _OnGrid(Planner):
 
     def reset(self, task: Task) -> None:
         if task.goal is None:
-            raise gloam.UsageError("planners 'route' and 'lidar' need the position of the goal")
+            raise gloam.UsageError("a planner with A* needs the position of the goal")
         self._goal, self._task = task.goal, task
         self._window = DynamicWindow(WindowOptions(top_speed=task.top_speed, radius=self.radius))
 
@@ -62,12 +59,10 @@ class Route(_OnGrid):
     def reset(self, task: Task) -> None:
         super().reset(task)
         if task.world is None:
-            raise gloam.UsageError("planner 'route' needs the World")
-        space = FreeSpace.of(task.world, robot_bodies(task.world, task.robot), radius=0.12)
-        grid = Grid((float(space.origin[0]), float(space.origin[1])), space.cell, space.blocked)
-        rows, columns = np.nonzero(grid.blocked)
-        self._blocked: Array = np.stack([grid.origin[0] + grid.cell * columns, grid.origin[1] + grid.cell * rows], axis=-1)
-        self._grid, self._cost = grid, _careful(grid)
+            raise gloam.UsageError("a planner with the scene's geometry needs the World")
+        self._grid = free_space(task.world, robot_bodies(task.world, task.robot), self.radius)
+        self._blocked = self._grid.middles(self._grid.blocked)
+        self._cost = self._grid.wall_cost(0.4, _CARE)
         self._path: list[Point] = []
 
     def plan(self, observation: Observation) -> Answer:
@@ -76,7 +71,7 @@ class Route(_OnGrid):
         here = observation.pose[:2]
         if not self._path or min(math.dist(p, here) for p in self._path) > 0.5:
             self._path = self._grid.path(here, self._goal, self._cost)
-        return self._drive(observation, self._path, _local(self._blocked, observation))
+        return self._drive(observation, self._path, _near(self._blocked, observation))
 
 
 class LidarFollower(_OnGrid):
@@ -134,12 +129,8 @@ class LidarFollower(_OnGrid):
     def _route(self, here: Point) -> list[Point]:
         assert self._seen is not None
         grid = Grid(self._low, self.cell, self._seen > 0.4)
-        close = grid.clearance(0.5)
-        wide = Grid(self._low, self.cell, close < 0.25)
-        path = wide.path(here, self._goal, _CARE * (1 - close / 0.5) ** 2)
-        return path or [self._goal]
-
-
+        wide = Grid(self._low, self.cell, grid.clearance(0.5) < 0.25)
+        return wide.path(here, self._goal, grid.wall_cost(0.5, _CARE)) or [self._goal]
 
 
 register_planner("route", Route)
