@@ -9,8 +9,10 @@ from pathlib import Path
 import gloam
 import numpy as np
 import pytest
-from gloam.navigation import Arrived, Driver, Observation, Planner, Rig, Task, Velocity, Waypoints, make_planner
+from gloam.envs.assets import asset_folder
+from gloam.navigation import Arrived, Driver, MapSource, Observation, Planner, Rig, Spacing, Task, Velocity, Waypoints, make_planner
 from gloam.navigation.planner import Answer
+from gloam.navigation.recorded import map_of_log
 from gloam.navigation.scene import drive, planner_of, task_of
 from navigation_scene import arena
 
@@ -98,6 +100,31 @@ def test_missing_parts_and_rates_are_rejected(sim: gloam.Simulation) -> None:
         Driver(sim, Rig("go"), Scripted([], rate=-1))
     with pytest.raises(gloam.NotFoundError, match="there is no planner 'rout'"):
         make_planner("rout")
+
+
+def test_rigs_have_the_named_parts_or_the_first_ones(world: gloam.World) -> None:
+    assert Rig.of(world) == Rig("go", world.cameras[0], "lidar") and world.cameras[0].startswith("go/")
+    assert Rig.of(world, "go", world.cameras[-1]).camera == world.cameras[-1]
+    for names, cause in ((("no",), "robot 'no'"), (("go", "no"), "camera 'no'"), (("", "", "no"), "LiDAR 'no'")):
+        with pytest.raises(gloam.NotFoundError, match=f"there is no {cause}; there are: "):
+            Rig.of(world, *names)
+    empty = gloam.Scene.from_dict({"environment": {"file": "environments/arena/arena.xml"}}, folder=asset_folder()).compile()
+    with pytest.raises(gloam.NotFoundError, match="no robot ''; there are: none"):
+        Rig.of(empty)
+
+
+def test_a_log_becomes_a_map(world: gloam.World, tmp_path: Path) -> None:
+    with gloam.Simulation(world) as sim, sim.record(tmp_path / "run.mcap", ("/clock", "/tf*")):
+        sim.robots["go"].command(vx=0.4)
+        sim.run_until(time=2.0)
+        place = np.array(sim.robots["go"].pose.p)
+    made = map_of_log(tmp_path / "run.mcap", tmp_path, Spacing("time", 0.5), (32, 24))
+    assert made.source == MapSource.of(world, world.cameras[0])
+    assert np.diff([node.time for node in made.nodes]) == pytest.approx(0.5) and made.nodes[0].image.shape == (24, 32, 3)
+    assert made.nodes[0].pose[:2] == pytest.approx((-1.4, 0.2), abs=0.05)
+    assert math.dist(made.nodes[-1].pose[:2], place[:2]) < 0.15, "at most a quarter of a second before the end"
+    with pytest.raises(gloam.NotFoundError, match="camera 'no'"):
+        map_of_log(tmp_path / "run.mcap", tmp_path, Spacing("time", 0.5), who=("", "no"))
 
 
 @pytest.mark.parametrize("name", ["straight", "route", "lidar"])

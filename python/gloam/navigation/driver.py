@@ -31,6 +31,20 @@ class Rig:
     lidar: str = ""
     render: dict[str, Any] = field(default_factory=lambda: {"tier": "interactive"})
 
+    @classmethod
+    def of(cls, world: gloam.World, robot: str = "", camera: str = "", lidar: str = "") -> Rig:
+        """The named parts. "": the first robot, its first camera, the first LiDAR of the scene, or "" if there is none.
+
+        Errors: NotFoundError for an unknown name, or if there is no robot.
+        """
+        robot = robot or next(iter(world.robots), "")
+        camera = camera or next((name for name in world.cameras if name.startswith(f"{robot}/")), "")
+        lidar = lidar or next(iter(world.lidars), "")
+        for kind, name, known in (("robot", robot, world.robots), ("camera", camera, world.cameras), ("LiDAR", lidar, world.lidars)):
+            if name not in known and (name or kind == "robot"):
+                raise gloam.NotFoundError(f"there is no {kind} '{name}'; there are: {', '.join(known) or 'none'}")
+        return cls(robot, camera, lidar)
+
 
 @dataclass
 class PlannerStats:

@@ -35,7 +35,7 @@ def planner_of(scene: gloam.Scene, allow_programs: bool = False) -> Planner:
 def task_of(scene: gloam.Scene, world: gloam.World) -> Task:
     """The task of a scene's planner: the first [[goal]] of its robot, and its map. Errors: UsageError."""
     table = _table(scene)
-    robot = _robot(table, world)
+    robot = rig_of(scene, world).robot
     goals = [goal for goal in _tables(scene).get("goal", []) if goal.get("robot", robot) == robot]
     goal = goals[0] if goals else None
     map_ = TopologicalMap.load(_resolved(scene, table["map"])) if table.get("map") else None
@@ -53,16 +53,9 @@ def task_of(scene: gloam.Scene, world: gloam.World) -> Task:
 
 
 def rig_of(scene: gloam.Scene, world: gloam.World) -> Rig:
-    """The parts of the robot that the planner uses: as [planner] names them, or the first ones."""
+    """The parts of the robot that the planner uses: as [planner] names them, or the first ones. Errors: as Rig.of()."""
     table = _table(scene)
-    robot = _robot(table, world)
-    cameras = [name for name in world.cameras if name.startswith(f"{robot}/")]
-    camera = table.get("camera") or (cameras[0] if cameras else "")
-    lidar = table.get("lidar") or (world.lidars[0] if world.lidars else "")
-    for kind, name, known in (("camera", camera, world.cameras), ("LiDAR", lidar, world.lidars)):
-        if name and name not in known:
-            raise gloam.NotFoundError(f"[planner] {kind} '{name}' does not exist; there are: {', '.join(known) or 'none'}")
-    return Rig(robot, camera, lidar)
+    return Rig.of(world, *(table.get(part) or "" for part in ("robot", "camera", "lidar")))
 
 
 def drive(sim: gloam.Simulation, until: float, allow_programs: bool = False) -> Driver:
@@ -106,10 +99,6 @@ def _table(scene: gloam.Scene) -> dict[str, Any]:
     if table is None:
         raise gloam.UsageError(f"scene '{scene.name}' has no [planner]", hint='add [planner] with a type, such as "route"')
     return dict(table)
-
-
-def _robot(table: dict[str, Any], world: gloam.World) -> str:
-    return str(table.get("robot") or world.robots[0])
 
 
 def _resolved(scene: gloam.Scene, path: str) -> Path:
