@@ -127,7 +127,7 @@ def test_a_log_becomes_a_map(world: gloam.World, tmp_path: Path) -> None:
         map_of_log(tmp_path / "run.mcap", tmp_path, Spacing("time", 0.5), who=("", "no"))
 
 
-@pytest.mark.parametrize("name", ["straight", "route", "lidar"])
+@pytest.mark.parametrize("name", ["straight", "route", "route_mppi", "lidar"])
 def test_baselines_reach_the_goal_and_repeat(world: gloam.World, name: str) -> None:
     hashes = set()
     for _ in range(2):
@@ -142,7 +142,7 @@ def test_baselines_reach_the_goal_and_repeat(world: gloam.World, name: str) -> N
 
 
 def test_planners_reject_incomplete_tasks() -> None:
-    for name in ("straight", "route", "lidar", "replay", "gloam"):
+    for name in ("straight", "route", "route_mppi", "lidar", "replay", "gloam"):
         try:
             planner = make_planner(name)
         except gloam.Error:

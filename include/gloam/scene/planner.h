@@ -11,8 +11,8 @@ namespace gloam {
 /// [planner]: turns observations into velocities of a robot. `gloam navigate` runs it: planners are
 /// Python code, networks, shared libraries or other processes. Its goal is the robot's [[goal]].
 struct PlannerOptions {
-  std::string type = {};    ///< straight replay route lidar gloam gnm vint nomad library external,
-                            ///< or a registered name
+  std::string type = {};    ///< straight replay route route_mppi lidar gloam gnm vint nomad library
+                            ///< external, or a registered name
   std::string robot = {};   ///< empty = the only robot of the scene
   std::string camera = {};  ///< empty = the first camera of the robot
   std::string lidar = {};   ///< empty = the first LiDAR of the scene

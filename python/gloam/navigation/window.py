@@ -7,29 +7,17 @@ robot that reaches a velocity within a control period, so it holds all velocitie
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 
 import numpy as np
 
+from .local import LocalOptions, Obstacles
 from .planner import Array, Velocity
-
-
-@dataclass(frozen=True)
-class WindowOptions:
-    """top_speed [m/s], top_yaw_rate [rad/s]: limits; horizon: time that arcs look ahead [s]; radius: of the robot [m];
-    margin: distance to obstacles that costs nothing [m]."""
-
-    top_speed: float = 0.4
-    top_yaw_rate: float = 1.0
-    horizon: float = 1.6
-    radius: float = 0.28
-    margin: float = 0.25
 
 
 class DynamicWindow:
     """Chooses velocities. Arcs are computed once: (n velocities, m instants, 2) [m] in the robot's frame."""
 
-    def __init__(self, options: WindowOptions) -> None:
+    def __init__(self, options: LocalOptions) -> None:
         self._options = options
         speeds = np.concatenate([[-0.3 * options.top_speed], np.linspace(0.0, options.top_speed, 6)])
         turns = np.linspace(-options.top_yaw_rate, options.top_yaw_rate, 15)
@@ -54,22 +42,9 @@ class DynamicWindow:
         bearing = np.arctan2(target[1] - ends[:, 1], target[0] - ends[:, 0]) - self._headings
         off = np.abs((bearing + math.pi) % (2 * math.pi) - math.pi)
         cost = left + 0.25 * off + np.where(self._velocities[:, 0] < 0, 0.3, 0.0)
-        if len(obstacles) > 0:
-            distance = self._distances(obstacles)
-            near = np.clip((options.radius + options.margin - distance) / options.margin, 0.0, 1.0)
-            turns_only = self._velocities[:, 0] == 0
-            here = float(np.hypot(obstacles[:, 0], obstacles[:, 1]).min())
-            least = min(options.radius, here - 0.02)  # a robot that is too close already may leave
-            cost = cost + 0.6 * near**2 + np.where((distance < least) & ~turns_only, 1e3, 0.0)
+        near = Obstacles(obstacles, options)
+        distances = near.distances(self._arcs).min(axis=1)
+        turns_only = self._velocities[:, 0] == 0
+        cost = cost + 0.6 * near.nearness(distances) ** 2 + np.where(near.hits(distances) & ~turns_only, 1e3, 0.0)
         v, w = self._velocities[int(np.argmin(cost))]
         return Velocity(vx=float(v), yaw_rate=float(w))
-
-    def _distances(self, obstacles: Array) -> Array:
-        """Least distance of each arc to the obstacles [m]."""
-        reach = self._options.top_speed * self._options.horizon + self._options.radius + self._options.margin
-        near = obstacles[np.hypot(obstacles[:, 0], obstacles[:, 1]) < reach]
-        if len(near) == 0:
-            return np.full(len(self._arcs), np.inf)
-        gaps = self._arcs[:, :, None, :] - near[None, None, :, :]
-        distances: Array = np.sqrt((gaps**2).sum(axis=-1)).min(axis=(1, 2))
-        return distances

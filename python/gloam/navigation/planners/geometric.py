@@ -1,4 +1,4 @@
-"""Baselines that know or measure geometry: A* with a dynamic window, on the scene's geometry or on a map from a LiDAR."""
+"""Baselines that know or measure geometry: A* and a local planner, on the scene's geometry or on a map from a LiDAR."""
 
 from __future__ import annotations
 
@@ -12,11 +12,13 @@ import gloam
 
 from ..free_space import free_space, robot_bodies
 from ..grid import Grid
+from ..local import LocalOptions, LocalPlanner
+from ..mppi import Mppi
 from ..paths import Point, point_ahead
 from ..planner import Answer, Arrived, Array, Need, Observation, Planner, Task, register_planner
-from ..window import DynamicWindow, WindowOptions
+from ..window import DynamicWindow
 
-_LOOKAHEAD = 0.8  # of the point on the path that the window aims at [m]
+_LOOKAHEAD = 0.8  # of the point on the path that the local planner aims at [m]
 _CARE = 4.0  # cost of a metre at an obstacle, in metres
 
 
@@ -30,7 +32,7 @@ def _near(points: Array, observation: Observation, reach: float = 2.0) -> Array:
 
 
 class _OnGrid(Planner):
-    """Follows the cheapest path on a grid. radius: of the robot for the dynamic window [m]."""
+    """Follows the cheapest path on a grid. radius: of the robot for the local planner [m]."""
 
     uses_map: ClassVar[bool] = False
     radius = 0.2
@@ -39,12 +41,15 @@ class _OnGrid(Planner):
         if task.goal is None:
             raise gloam.UsageError("a planner with A* needs the position of the goal")
         self._goal, self._task = task.goal, task
-        self._window = DynamicWindow(WindowOptions(top_speed=task.top_speed, radius=self.radius))
+        self._local = self._local_planner(LocalOptions(task.top_speed, radius=self.radius))
+
+    def _local_planner(self, options: LocalOptions) -> LocalPlanner:
+        return DynamicWindow(options)
 
     def _drive(self, observation: Observation, path: list[Point], obstacles: Array) -> Answer:
         here = observation.pose[:2]
         target = point_ahead(path, here, _LOOKAHEAD) if path else self._goal
-        return self._window.choose(observation.in_robot_frame(target), obstacles)
+        return self._local.choose(observation.in_robot_frame(target), obstacles)
 
     def _has_arrived(self, observation: Observation) -> bool:
         return math.dist(observation.pose[:2], self._goal) < 0.8 * self._task.radius
@@ -72,6 +77,13 @@ class Route(_OnGrid):
         if not self._path or min(math.dist(p, here) for p in self._path) > 0.5:
             self._path = self._grid.path(here, self._goal, self._cost)
         return self._drive(observation, self._path, _near(self._blocked, observation))
+
+
+class RouteMppi(Route):
+    """The same with MPPI in place of the dynamic window."""
+
+    def _local_planner(self, options: LocalOptions) -> LocalPlanner:
+        return Mppi(options, 1.0 / self.rate, self._task.seed)
 
 
 class LidarFollower(_OnGrid):
@@ -134,4 +146,5 @@ class LidarFollower(_OnGrid):
 
 
 register_planner("route", Route)
+register_planner("route_mppi", RouteMppi)
 register_planner("lidar", LidarFollower)
