@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import errno
 import json
 import math
 import shutil
-from dataclasses import fields, replace
+from dataclasses import asdict, fields, replace
 from pathlib import Path
 
 import gloam
@@ -13,9 +14,10 @@ import numpy as np
 import pytest
 from gloam.navigation import Arrived, Observation, Planner, Task, Velocity, register_planner
 from gloam.navigation.benchmark.episode import EpisodeSpec, Touched, Watch, run_episode
+from gloam.navigation.benchmark.options import File, Option
 from gloam.navigation.benchmark.places import LEVELS, ROBOT, Course, Pair, scene_of
 from gloam.navigation.benchmark.request import REQUEST_FILE, Request
-from gloam.navigation.benchmark.runner import run
+from gloam.navigation.benchmark.runner import Workers, run
 from navigation_replay import measured
 
 
@@ -109,6 +111,28 @@ def test_a_planner_that_cannot_start_is_an_error(course: Course, tmp_path: Path)
     assert result["outcome"] == "error" and "needs weights" in result["message"] and not result["success"]
 
 
+class _Breaks(_Tired):
+    """Raises an exception when an episode begins."""
+
+    def __init__(self, error: str = "") -> None:
+        self._error = error
+
+    def reset(self, task: Task) -> None:
+        raise {"full": OSError(errno.ENOSPC, "disk is full"), "gone": ConnectionResetError("no answer")}[self._error]
+
+
+register_planner("breaks", _Breaks)
+
+
+def test_a_full_disk_is_no_failure_of_the_planner(course: Course, tmp_path: Path) -> None:
+    spec = EpisodeSpec("breaks", "house", "none", 0, log=False, options=(("error", "full"),))
+    with pytest.raises(OSError, match="disk is full"):
+        run_episode(spec, course.pair(spec.pair_seed), tmp_path / "e", tmp_path / "maps")
+    gone = replace(spec, options=(("error", "gone"),))
+    result = run_episode(gone, course.pair(spec.pair_seed), tmp_path / "f", tmp_path / "maps")
+    assert result["outcome"] == "error" and "no answer" in result["message"]
+
+
 class _Robot:
     def __init__(self, sim: _Sim) -> None:
         self.pose = gloam.Pose(np.array([*sim.at, 0.3]), np.array([1.0, 0, 0, 0]))
@@ -167,18 +191,18 @@ def test_requests_are_checked(tmp_path: Path) -> None:
 
 
 def test_a_request_survives_its_file_and_is_continued(tmp_path: Path) -> None:
-    request = Request(("route", "own"), ("house",), ("none", "minor"), 3, 5, "path", False)
+    request = Request(("route", "own"), ("house",), ("none", "minor"), 3, 5, "path", False, (Option("own", "type", "route"),), (File("p.py", "12"),))
     same_as_default = [f.name for f in fields(Request) if getattr(request, f.name) == getattr(Request(()), f.name)]
     assert same_as_default == ["machine", "version", "started"], "each option is compared below"
     request.keep(tmp_path)
     kept = Request.read(tmp_path / REQUEST_FILE)
     assert replace(kept, machine="", version="", started="") == request
     assert kept.machine and kept.started and kept.version == gloam.__version__
-    (tmp_path / REQUEST_FILE).write_text(json.dumps(vars(replace(kept, started="2020-01-01", machine="another"))))
+    (tmp_path / REQUEST_FILE).write_text(json.dumps(asdict(replace(kept, started="2020-01-01", machine="another"))))
     for episodes, most in ((9, 9), (2, 9)):
         replace(request, episodes=episodes).keep(tmp_path)
         assert Request.read(tmp_path / REQUEST_FILE) == replace(kept, started="2020-01-01", episodes=most)
-    for name, value in (("planners", ("route",)), ("seed", 6), ("tier", "direct"), ("log", True)):
+    for name, value in (("planners", ("route",)), ("seed", 6), ("tier", "direct"), ("log", True), ("plugins", ())):
         with pytest.raises(gloam.UsageError, match=rf"another benchmark \({name} differ\)"):
             replace(request, **{name: value}).keep(tmp_path)
     (tmp_path / REQUEST_FILE).write_text("{")
@@ -189,14 +213,14 @@ def test_a_request_survives_its_file_and_is_continued(tmp_path: Path) -> None:
 @pytest.mark.slow
 def test_runs_continue_and_adversity_is_paired(tmp_path: Path) -> None:
     request = Request(("straight", "route"), ("house",), ("none", "major"), 1)
-    first = run(request, tmp_path, workers=1)
+    first = run(request, tmp_path, Workers(1))
     assert len(first) == 4 and {r["outcome"] for r in first if r["planner"] == "route"} == {"success"}
     assert len({tuple(r["start"]) for r in first}) == 1
     kept = {p: p.stat().st_mtime_ns for p in tmp_path.rglob("episode.json")}
     gone = tmp_path / "episodes" / "straight" / "house" / "none" / "0000"
     before = json.loads((gone / "episode.json").read_text())["hash"]
     shutil.rmtree(gone)
-    second = run(request, tmp_path, workers=1)
+    second = run(request, tmp_path, Workers(1))
     assert [r["hash"] for r in second] == [r["hash"] for r in first]
     assert json.loads((gone / "episode.json").read_text())["hash"] == before
     same = [p for p, time in kept.items() if p.stat().st_mtime_ns == time]

@@ -6,7 +6,12 @@ from __future__ import annotations
 import argparse
 import sys
 import tempfile
+import time
 from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from gloam.navigation.benchmark.request import Request
 
 
 def main(arguments: list[str] | None = None) -> int:
@@ -39,6 +44,7 @@ def _add_navigate(commands: argparse._SubParsersAction[argparse.ArgumentParser])
     command.add_argument("scene", help="scene with a [planner]")
     command.add_argument("--duration", type=float, help="[s]; default: the scene's")
     command.add_argument("--seed", type=int, help="default: the scene's")
+    command.add_argument("--plugin", action="append", default=[], help="Python file or module that registers planners; repeatable")
     command.add_argument("--log", help="file of a log to record (MCAP)")
     command.add_argument("--topics", default="/clock,/tf*", help="topics of the log beside states and inputs; default: %(default)s")
     command.add_argument("--overwrite", action="store_true", help="replace an existing log")
@@ -52,8 +58,11 @@ def _add_navigate(commands: argparse._SubParsersAction[argparse.ArgumentParser])
 
 def _navigate(given: argparse.Namespace) -> int:
     import gloam
+    from gloam.navigation.plugins import load_plugin
     from gloam.navigation.scene import drive
 
+    for plugin in given.plugin:
+        load_plugin(plugin)
     with gloam.load(given.scene, seed=given.seed) as sim:
         until = given.duration if given.duration is not None else sim.scene.duration
         if given.log:
@@ -105,17 +114,28 @@ def _map(given: argparse.Namespace) -> int:
     return 0
 
 
+_BENCH_EXAMPLES = """\
+Examples:
+  gloam bench nav --n 5 --planners route,lidar
+  gloam bench nav --planners gnm,nomad --set gnm.weights=gnm.onnx --set nomad.weights=FOLDER
+  gloam bench nav --planners clear,hazy --set clear.type=gnm --set clear.weights=clear.onnx \\
+      --set hazy.type=gnm --set hazy.weights=hazy.onnx
+  gloam bench nav --planners route,follow --plugin FILE --scenes house --levels none,major --out nav"""
+
+
 def _add_bench(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     command = commands.add_parser(
         "bench",
         prog="gloam bench nav",
         help="the benchmark of visual navigation",
         description="Planners x scenes x adversity levels (docs/navigation.md). A repeated call continues.",
-        epilog="Examples:\n  gloam bench nav --n 5 --planners route,lidar,gloam\n  gloam bench nav --scenes house --levels none,major --out nav",
+        epilog=_BENCH_EXAMPLES,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     option = command.add_argument
-    option("--planners", default="straight,replay,lidar,route,gloam", help="names, separated by commas; default: %(default)s")
+    option("--planners", help="names, separated by commas; default: straight,replay,lidar,route, and gloam if its network exists")
+    option("--set", action="append", default=[], metavar="PLANNER.OPTION=VALUE", help="option of a planner, see below; repeatable")
+    option("--plugin", action="append", default=[], help="Python file or module that registers planners; repeatable")
     option("--scenes", default="house,warehouse", help="also office and tunnel; default: %(default)s")
     option("--levels", default="none,minor,major", help="default: %(default)s")
     option("--n", type=int, default=100, help="episodes of each planner, scene and level; default: %(default)s")
@@ -130,25 +150,49 @@ def _add_bench(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
 
 
 def _bench(given: argparse.Namespace) -> int:
+    from gloam.navigation.benchmark.cost import cost_lines
     from gloam.navigation.benchmark.report import write_report
-    from gloam.navigation.benchmark.request import Request
-    from gloam.navigation.benchmark.runner import run
+    from gloam.navigation.benchmark.request import machine_name
+    from gloam.navigation.benchmark.runner import Workers, run
     from gloam.navigation.benchmark.videos import render_videos
 
-    split = {name: tuple(filter(None, getattr(given, name).split(","))) for name in ("planners", "scenes", "levels")}
-    request = Request(**split, episodes=given.n, seed=given.seed, tier=given.tier, log=not given.no_log)
-    out = Path(given.out)
-
-    def tell(text: str) -> None:
-        print(text, file=sys.stderr, flush=True)
-
-    run(request, out, given.workers, tell)
-    problems = [] if given.no_report or given.no_videos else render_videos(out, tell)
+    request, out, begin = _request(given), Path(given.out), time.monotonic()
+    try:
+        results = run(request, out, Workers(given.workers), _tell)
+    except KeyboardInterrupt:
+        done = sum(1 for _ in out.glob("episodes/*/*/*/[!.]*/episode.json"))
+        _tell(f"gloam: {done} episodes are complete in {out}; the same command continues")
+        raise
+    for line in cost_lines(results, time.monotonic() - begin, machine_name()):
+        _tell(line)
+    problems = [] if given.no_report or given.no_videos else render_videos(out, _tell)
     for file in [] if given.no_report else write_report(out):
         print(file)
     for problem in problems:
-        tell(f"gloam: {problem}")
+        _tell(f"gloam: {problem}")
     return 3 if problems else 0
+
+
+def _request(given: argparse.Namespace) -> Request:
+    from gloam.navigation.benchmark.options import completed, parse_options, plugin_files
+    from gloam.navigation.benchmark.request import Request
+    from gloam.navigation.planners.goal_image import own_weights
+
+    planners = given.planners
+    if planners is None:
+        planners = "straight,replay,lidar,route"
+        if own_weights().is_file():
+            planners += ",gloam"
+        else:
+            _tell(f"planner gloam is left out: its network {own_weights()} does not exist yet")
+    names, scenes, levels = (tuple(filter(None, text.split(","))) for text in (planners, given.scenes, given.levels))
+    plugins = plugin_files(given.plugin)
+    options = completed(names, parse_options(given.set))
+    return Request(names, scenes, levels, given.n, given.seed, given.tier, not given.no_log, options, plugins)
+
+
+def _tell(text: str) -> None:
+    print(text, file=sys.stderr, flush=True)
 
 
 if __name__ == "__main__":

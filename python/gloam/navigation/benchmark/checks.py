@@ -46,6 +46,10 @@ class Fields:
             raise self.error(name, "is missing")
         return self._values[name]
 
+    def has(self, name: str) -> bool:
+        """Whether the object has the value."""
+        return name in self._values
+
     def text(self, name: str) -> str:
         """Text without NUL, which no file of the report can contain."""
         value = self.value(name)

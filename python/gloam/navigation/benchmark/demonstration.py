@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import math
+import shutil
+import uuid
 from pathlib import Path
 
 import numpy as np
 
 import gloam
+from gloam._distribute.manifest import publish
 
 from ..topological_map import MapSource, Node, TopologicalMap
 from .places import CAMERA, ROBOT, TOP_SPEED, Pair, world_of
@@ -55,10 +58,10 @@ def _free_joint(sim: gloam.Simulation) -> int:
 def map_of(place: str, pair: Pair, folder: Path) -> TopologicalMap:
     """The map in `folder`, which is made if it is missing."""
     if not folder.is_dir():
-        part = folder.with_name(f".{folder.name}.part")
-        demonstrate(place, pair).save(part)
+        part = folder.with_name(f".{folder.name}.{uuid.uuid4().hex[:12]}")
         try:
-            part.rename(folder)
-        except OSError:  # another process was faster
-            pass
+            demonstrate(place, pair).save(part)
+            publish(part, folder)
+        finally:
+            shutil.rmtree(part, ignore_errors=True)  # another process was faster
     return TopologicalMap.load(folder)

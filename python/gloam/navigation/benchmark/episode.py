@@ -7,6 +7,7 @@ import math
 import resource
 import time
 from collections import Counter
+from contextlib import ExitStack
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -17,13 +18,15 @@ import gloam
 
 from ..driver import WATCH_PERIOD, Driver, Rig
 from ..paths import Point
-from ..planner import Task, make_planner
+from ..planner import Task
 from .demonstration import map_of
 from .key import Key
+from .options import create
 from .places import CAMERA, LIDAR, RADIUS, ROBOT, TOP_SPEED, Pair, world_of
 
 LOG_TOPICS = ("/clock", "/tf*")
 _STAND = 0.3  # the quadruped's height at the start [m]
+_BEGIN = 1.0  # of the planner's time: until then the robot comes to rest on its feet [s]
 _STUCK_TIME, _STUCK_REACH = 15.0, 0.25  # an episode ends when the robot has stayed within so many metres [s], [m]
 _LOW = 0.05  # contacts below are steps on rugs and sills [m]
 _TRACK = 10  # instants of a watch between two places of the track
@@ -135,7 +138,7 @@ class Watch:
 
 def run_episode(spec: EpisodeSpec, pair: Pair, folder: Path, maps: Path) -> dict[str, Any]:
     """Runs it and writes episode.json and run.mcap into a new folder. An exception of the planner's creation or reset
-    becomes an episode of outcome "error"."""
+    becomes an episode of outcome "error". Errors: OSError if a file cannot be written."""
     begin, cpu = time.perf_counter(), _cpu_seconds()
     limit = 10.0 + 2.5 * pair.shortest / TOP_SPEED
     result: dict[str, Any] = {
@@ -145,7 +148,9 @@ def run_episode(spec: EpisodeSpec, pair: Pair, folder: Path, maps: Path) -> dict
     folder.mkdir(parents=True)
     try:
         result |= _drive(spec, pair, folder, maps, limit)
-    except (gloam.Error, ValueError, TypeError, OSError) as error:
+    except Exception as error:  # of anybody's planner
+        if isinstance(error, OSError) and not isinstance(error, ConnectionError | TimeoutError):
+            raise  # a full disk, for example, is no failure of the planner
         result |= _failed(f"{type(error).__name__}: {error}", math.dist(pair.start[:2], pair.goal))
     result |= {
         "wall_seconds": time.perf_counter() - begin,
@@ -158,28 +163,25 @@ def run_episode(spec: EpisodeSpec, pair: Pair, folder: Path, maps: Path) -> dict
 
 def _drive(spec: EpisodeSpec, pair: Pair, folder: Path, maps: Path, limit: float) -> dict[str, Any]:
     world = world_of(spec.place, spec.level)
-    planner = make_planner(spec.planner, **dict(spec.options))
+    planner = create(spec.planner, spec.options)
     map_ = map_of(spec.place, pair, maps / spec.place / f"{spec.number:04}") if planner.uses_map else None
     task = Task(ROBOT, spec.pair_seed, pair.goal, map_, world, TOP_SPEED, RADIUS)
     with gloam.Simulation(world, seed=spec.pair_seed) as sim:
         rig = Rig(ROBOT, CAMERA, LIDAR, {"tier": spec.tier})
         driver = Driver(sim, rig, planner)
         watch = Watch(pair.goal)
-        try:
+        with ExitStack() as stack:
+            stack.callback(driver.close)
             if spec.log:
-                with sim.record(folder / "run.mcap", LOG_TOPICS, overwrite=True):
-                    _walk(sim, driver, task, pair, limit, watch)
-            else:
-                _walk(sim, driver, task, pair, limit, watch)
-        finally:
-            driver.close()
+                stack.enter_context(sim.record(folder / "run.mcap", LOG_TOPICS, overwrite=True))
+            _stand(sim, pair)
+            driver.run(task, _BEGIN + limit, watch)
         return _measured(sim, driver, watch)
 
 
-def _walk(sim: gloam.Simulation, driver: Driver, task: Task, pair: Pair, limit: float, watch: Watch) -> None:
+def _stand(sim: gloam.Simulation, pair: Pair) -> None:
     sim.robots[ROBOT].place((pair.start[0], pair.start[1], _STAND), yaw=pair.start[2])
-    sim.run_until(time=1.0)  # it comes to rest on its feet
-    driver.run(task, 1.0 + limit, watch)
+    sim.run_until(time=_BEGIN)
 
 
 def _measured(sim: gloam.Simulation, driver: Driver, watch: Watch) -> dict[str, Any]:
@@ -190,7 +192,7 @@ def _measured(sim: gloam.Simulation, driver: Driver, watch: Watch) -> dict[str, 
         outcome = "lost"
     stats = driver.stats
     return {
-        "outcome": outcome, "success": outcome == "success", "time": end - 1.0, "path_length": watch.length,
+        "outcome": outcome, "success": outcome == "success", "time": end - _BEGIN, "path_length": watch.length,
         "final_distance": left, "collisions": watch.touched.total(), "collisions_by_object": watch.touched.by_object,
         "visibility_mean": None, "visibility_min": None, "plans": stats.plans, "late": stats.late,
         "invalid": stats.invalid, "message": stats.error, "hash": f"{sim.hash:#018x}",

@@ -5,19 +5,23 @@ from __future__ import annotations
 import json
 import os
 import platform
+import re
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import asdict, dataclass, fields, replace
 from pathlib import Path
+from typing import Any, TypeVar
 
 import gloam
 
 from ..planner import planner_names
 from .checks import Fields, read_object
 from .episode import EpisodeSpec
+from .options import File, Option, arguments, read_files, read_options, type_of
 from .places import LEVELS, PLACES
 
 REQUEST_FILE = "request.json"
+T = TypeVar("T")
 _MAY_DIFFER = {"episodes", "machine", "version", "started"}  # between the calls that continue a benchmark
 
 
@@ -25,8 +29,8 @@ _MAY_DIFFER = {"episodes", "machine", "version", "started"}  # between the calls
 class Request:
     """Episodes of a results folder: all planners x scenes x levels x numbers 0 … episodes - 1.
 
-    levels: in order of increasing adversity; tier: of images; log: whether episodes have a run.mcap; machine, version,
-    started: text for the page, which keep() fills in.
+    levels: in order of increasing adversity; tier: of images; log: whether episodes have a run.mcap; options, plugins: of
+    planners; machine, version, started: text for the page, which keep() fills in.
     """
 
     planners: tuple[str, ...]
@@ -36,6 +40,8 @@ class Request:
     seed: int = 1
     tier: str = "interactive"
     log: bool = True
+    options: tuple[Option, ...] = ()
+    plugins: tuple[File, ...] = ()
     machine: str = ""
     version: str = ""
     started: str = ""
@@ -43,23 +49,28 @@ class Request:
     def check(self) -> None:
         """Errors: NotFoundError for an unknown planner, scene or level; UsageError for numbers out of range."""
         for kind, asked, known in (
-            ("planner", self.planners, planner_names()), ("scene", self.scenes, PLACES), ("level", self.levels, LEVELS),
+            ("planner", self._types(), planner_names()), ("scene", self.scenes, PLACES), ("level", self.levels, LEVELS),
         ):  # fmt: skip
             for name in asked:
                 if name not in known:
                     raise gloam.NotFoundError(f"there is no {kind} '{name}'; there are: {', '.join(known)}")
+        for kind, asked in (("planner", self.planners), ("scene", self.scenes), ("level", self.levels)):
             if not asked or len(set(asked)) != len(asked):
                 raise gloam.UsageError(f"name each {kind} once, got {', '.join(asked) or 'none'}")
+        if unfit := [name for name in self.planners if not re.fullmatch(r"[\w+-][\w.+-]*", name)]:
+            raise gloam.UsageError(f"a planner's name is also a folder's, which '{unfit[0]}' cannot be")
         if not 1 <= self.episodes <= 100_000 or not 0 <= self.seed < 2**32:
             raise gloam.UsageError("expected 1 to 100000 episodes, and a seed from 0 to 2^32 - 1")
 
+    def _types(self) -> tuple[str, ...]:
+        return tuple(type_of(planner, self.options) for planner in self.planners)
+
     def specs(self) -> Iterator[EpisodeSpec]:
         """All episodes, one of each cell before the second of any: an interrupted run has something of everything."""
+        options = {planner: arguments(planner, self.options) for planner in self.planners}
         for number in range(self.episodes):
-            for scene in self.scenes:
-                for level in self.levels:
-                    for planner in self.planners:
-                        yield EpisodeSpec(planner, scene, level, number, self.seed, self.tier, log=self.log)
+            for planner, scene, level in self.cells():
+                yield EpisodeSpec(planner, scene, level, number, self.seed, self.tier, options[planner], self.log)
 
     def cells(self) -> Iterator[tuple[str, str, str]]:
         """(planner, scene, level) of all cells, scenes first, in the order of the request."""
@@ -70,13 +81,12 @@ class Request:
         the day of the first call. Errors: UsageError if it holds another one; InputError if its file is not valid."""
         file = folder / REQUEST_FILE
         kept = Request.read(file) if file.is_file() else self
-        different = [f.name for f in fields(self) if f.name not in _MAY_DIFFER and getattr(self, f.name) != getattr(kept, f.name)]
-        if different:
+        if different := _differences(self, kept):
             raise gloam.UsageError(f"{folder} holds another benchmark ({', '.join(different)} differ)", hint="choose another folder")
         written = replace(
             self,
             episodes=max(self.episodes, kept.episodes),
-            machine=_machine(),
+            machine=machine_name(),
             version=gloam.__version__,
             started=kept.started or time.strftime("%Y-%m-%d"),
         )
@@ -98,13 +108,31 @@ class Request:
             values.integer("seed"),
             values.text("tier"),
             values.boolean("log"),
+            _parts(values, "options", read_options),
+            _parts(values, "plugins", read_files),
             values.description("machine"),
             values.text("version"),
             values.text("started"),
         )
 
 
-def _machine() -> str:
+def _differences(first: Request, second: Request) -> list[str]:
+    """Names of the fields and options that differ; files differ by their content."""
+    names = [f.name for f in fields(first) if f.name not in _MAY_DIFFER | {"options"}]
+    options = {str(o) for o in set(first.options) ^ set(second.options)}
+    return [name for name in names if getattr(first, name) != getattr(second, name)] + sorted(options)
+
+
+def _parts(values: Fields, name: str, read: Callable[[Any], tuple[T, ...]]) -> tuple[T, ...]:
+    """A list of a request, which has none if it was written before there were options."""
+    try:
+        return read(values.value(name)) if values.has(name) else ()
+    except (KeyError, TypeError, ValueError) as error:
+        raise values.error(name, f"cannot be read: {type(error).__name__}: {error}") from None
+
+
+def machine_name() -> str:
+    """Model and number of its processors."""
     try:
         lines = Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines()
         name = next(line.split(":", 1)[1].strip() for line in lines if line.startswith("model name"))

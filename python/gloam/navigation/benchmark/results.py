@@ -102,6 +102,8 @@ def load_results(folder: str | Path) -> Results:
     expected = {key.folder: key for key in wanted}
     found: dict[Key, Episode] = {}
     for path in sorted((folder / "episodes").rglob("episode.json")):
+        if path.parent.name.startswith("."):  # being written
+            continue
         key = expected.get(path.parent.relative_to(folder).as_posix())
         if key is None:
             raise InputError("the request does not contain this episode", str(path), hint="see request.json")

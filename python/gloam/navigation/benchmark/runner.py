@@ -1,4 +1,4 @@
-"""`gloam bench nav`: all episodes of planners, scenes and levels, on several processes, and their report.
+"""`gloam bench nav`: all episodes of planners, scenes and levels, on several processes or machines.
 
 Each episode is one folder, which gets its name when it is complete: a repeated call continues after any interruption,
 and runs each episode once.
@@ -8,45 +8,84 @@ from __future__ import annotations
 
 import fcntl
 import json
-import multiprocessing
 import os
 import shutil
 import time
-from collections.abc import Callable, Iterable, Iterator
-from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
-from concurrent.futures.process import BrokenProcessPool
-from contextlib import contextmanager
+import uuid
+from collections import deque
+from collections.abc import Callable, Generator, Iterator
+from contextlib import closing, contextmanager
+from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
 import gloam
+from gloam._distribute.manifest import publish
 
+from ..plugins import load_plugin
 from .episode import EpisodeSpec, run_episode
+from .options import check_planners
 from .places import Course
+from .pool import Died, local_results
 from .request import Request
+from .words import duration
 
 _MOST_CRASHES = 3  # of worker processes with one episode, before the benchmark stops
+_PART = "."  # begins the names of folders that are being written
 
 
-def run(request: Request, out: Path, workers: int = 0, tell: Callable[[str], None] | None = None) -> list[dict[str, Any]]:
-    """Runs the missing episodes of a folder. workers: processes; 0 = one for two processors. Returns all results.
+@dataclass(frozen=True)
+class Workers:
+    """Where episodes run. count: processes of this machine, 0 = one for two processors."""
 
-    Errors: UsageError if the folder holds another request or is in use.
+    count: int = 0
+
+    def results(
+        self, do: Callable[[EpisodeSpec], Result], specs: deque[EpisodeSpec]
+    ) -> Generator[tuple[EpisodeSpec, Result | Died], None, None]:
+        """Results as they come; specs may grow meanwhile."""
+        return local_results(do, specs, min(self.count or max(1, (os.cpu_count() or 1) // 2), len(specs)))
+
+
+Result = dict[str, Any]
+
+
+def run(
+    request: Request, out: Path, workers: Workers | None = None, tell: Callable[[str], None] | None = None
+) -> list[Result]:
+    """Runs the missing episodes of a folder. Returns all results.
+
+    Errors: UsageError if the request is wrong, or the folder holds another one or is in use; gloam.Error if an episode
+    cannot be written, or its process has ended several times.
     """
     request.check()
+    check_planners(request.planners, request.options)  # before the folder knows the request
     with _folder(request, out):
-        waiting = [spec for spec in request.specs() if not (out / "episodes" / spec.path / "episode.json").is_file()]
-        _run_all(waiting, out, workers or max(1, (os.cpu_count() or 1) // 2), tell or (lambda _: None))
-    files = [out / "episodes" / spec.path / "episode.json" for spec in request.specs()]
-    return [json.loads(file.read_text(encoding="utf-8")) for file in files]
+        missing = [spec for spec in request.specs() if not _file(out, spec).is_file()]
+        if missing:
+            _remove_parts(out)
+            job = Job(str(out.resolve()), tuple(file.name for file in request.plugins))
+            try:
+                _run_all(missing, job, workers or Workers(), tell or (lambda _: None))
+            finally:
+                _remove_parts(out)
+    return [json.loads(_file(out, spec).read_text(encoding="utf-8")) for spec in request.specs()]
+
+
+def _file(out: Path, spec: EpisodeSpec) -> Path:
+    return out / "episodes" / spec.path / "episode.json"
 
 
 @contextmanager
 def _folder(request: Request, out: Path) -> Iterator[None]:
     """Locks the folder, and keeps its request."""
-    out.mkdir(parents=True, exist_ok=True)
-    with (out / ".lock").open("w") as lock:
+    try:
+        out.mkdir(parents=True, exist_ok=True)
+        lock = (out / ".lock").open("w")
+    except OSError as error:
+        raise gloam.IoError(f"the folder cannot be created: {error.strerror}", str(out)) from None
+    with lock:
         try:
             fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except BlockingIOError:
@@ -55,59 +94,58 @@ def _folder(request: Request, out: Path) -> Iterator[None]:
         yield
 
 
-@lru_cache(maxsize=1)
+def _remove_parts(out: Path) -> None:
+    """Removes folders of episodes and maps whose processes were killed."""
+    for part in [*out.glob(f"episodes/*/*/*/{_PART}*"), *out.glob(f"maps/*/{_PART}*")]:
+        shutil.rmtree(part, ignore_errors=True)
+
+
+@lru_cache
 def _course(place: str) -> Course:
     return Course(place)
 
 
-def work(spec: EpisodeSpec, out: Path) -> dict[str, Any]:
-    """One episode, in a worker: its folder appears when it is complete. The last one wins if two workers run it."""
-    folder = out / "episodes" / spec.path
-    part = folder.with_name(f".{folder.name}.{os.getpid()}")
-    shutil.rmtree(part, ignore_errors=True)
-    pair = _course(spec.place).pair(spec.pair_seed)
-    result = run_episode(spec, pair, part, out / "maps")
-    try:
-        part.rename(folder)
-    except OSError:
-        shutil.rmtree(part, ignore_errors=True)
-    return result
+@dataclass(frozen=True)
+class Job:
+    """The work of one episode in a worker. out: folder of the benchmark; plugins: names for load_plugin()."""
+
+    out: str
+    plugins: tuple[str, ...] = ()
+
+    def __call__(self, spec: EpisodeSpec) -> Result:
+        """Its folder appears when it is complete; if two workers run it, the first one's counts."""
+        for plugin in self.plugins:
+            load_plugin(plugin)
+        out = Path(self.out)
+        folder = out / "episodes" / spec.path
+        part = folder.with_name(f"{_PART}{folder.name}.{uuid.uuid4().hex[:12]}")
+        try:
+            result = run_episode(spec, _course(spec.place).pair(spec.pair_seed), part, out / "maps")
+            publish(part, folder)
+            return result
+        finally:
+            shutil.rmtree(part, ignore_errors=True)
 
 
-def _run_all(specs: list[EpisodeSpec], out: Path, workers: int, tell: Callable[[str], None]) -> None:
+def _run_all(specs: list[EpisodeSpec], job: Job, workers: Workers, tell: Callable[[str], None]) -> None:
     begin, done, total = time.monotonic(), 0, len(specs)
     crashes: dict[EpisodeSpec, int] = {}
-    while specs:
-        with ProcessPoolExecutor(workers, mp_context=multiprocessing.get_context("spawn")) as pool:
-            running = {pool.submit(work, spec, out): spec for spec in _ordered(specs)}
-            specs = []
-            for spec, future in _as_they_finish(running):
-                try:
-                    result = future.result()
-                except BrokenProcessPool:  # a worker was killed: its episodes are tried again, one crash each at most
-                    crashes[spec] = crashes.get(spec, 0) + 1
-                    if crashes[spec] > _MOST_CRASHES:
-                        raise gloam.Error(f"the process of {spec.path} ended {_MOST_CRASHES} times") from None
-                    specs.append(spec)
-                    continue
-                done += 1
-                left = (time.monotonic() - begin) / done * (total - done)
-                tell(f"{done} of {total}: {spec.path} {result['outcome']}, {_duration(left)} left")
+    waiting = deque(_ordered(specs))
+    with closing(workers.results(job, waiting)) as results:
+        for spec, result in results:
+            if isinstance(result, Died):
+                crashes[spec] = crashes.get(spec, 0) + 1
+                if crashes[spec] >= _MOST_CRASHES:
+                    raise gloam.Error(f"the process of {spec.path} ended {_MOST_CRASHES} times: killed, out of memory, or a crash")
+                tell(f"the process of {spec.path} ended; it runs again")
+                waiting.append(spec)
+                continue
+            done += 1
+            left = (time.monotonic() - begin) / done * (total - done)
+            tell(f"{done} of {total}: {spec.path} {result['outcome']}, {duration(left)} left")
 
 
-def _ordered(specs: Iterable[EpisodeSpec]) -> list[EpisodeSpec]:
+def _ordered(specs: list[EpisodeSpec]) -> list[EpisodeSpec]:
     """Scene by scene within each number, so that workers keep their compiled Worlds."""
     return sorted(specs, key=lambda spec: (spec.number, spec.place, spec.level, spec.planner))
 
-
-def _as_they_finish(running: dict[Future[Any], EpisodeSpec]) -> Iterator[tuple[EpisodeSpec, Future[Any]]]:
-    while running:
-        finished, _ = wait(running, return_when=FIRST_COMPLETED)
-        for future in finished:
-            yield running.pop(future), future
-
-
-def _duration(seconds: float) -> str:
-    if seconds < 100:
-        return f"{seconds:.0f} s"
-    return f"{seconds / 60:.0f} min" if seconds < 6000 else f"{seconds / 3600:.1f} h"

@@ -171,8 +171,13 @@ def _published(name: str, weights: str | Path | None = None, **options: Any) -> 
     return GoalImagePlanner(weights, **options)
 
 
+def own_weights() -> Path:
+    """The file of Gloam's own policy, which need not exist."""
+    return Path(gloam.home()) / "assets/policies/navigation/policy.onnx"
+
+
 def _own(weights: str | Path | None = None, **options: Any) -> GoalImagePlanner:
-    return GoalImagePlanner(weights or Path(gloam.home()) / "assets/policies/navigation/policy.onnx", **options)
+    return GoalImagePlanner(weights or own_weights(), **options)
 
 
 register_planner("gnm", partial(_published, "gnm"))
