@@ -70,6 +70,7 @@ def test_a_success_has_a_log_that_verifies(course: Course, tmp_path: Path) -> No
     spec = EpisodeSpec("route", "house", "none", 1)
     result = run_episode(spec, course.pair(spec.pair_seed), tmp_path / "e", tmp_path / "maps")
     assert result["outcome"] == "success" and result["final_distance"] < 1.0
+    assert result["visibility_mean"] == result["visibility_min"] == pytest.approx(100_000), "the air is clear"
     assert gloam.replay(tmp_path / "e" / "run.mcap").verify().is_equal
 
 

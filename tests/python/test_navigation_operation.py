@@ -14,16 +14,23 @@ from collections.abc import Callable, Iterator
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
 
 import gloam
+import numpy as np
 import pytest
 from gloam.navigation.benchmark.cost import cost_lines
 from gloam.navigation.benchmark.episode import EpisodeSpec
 from gloam.navigation.benchmark.options import File, Option, arguments, completed, parse_options, plugin_files
+from gloam.navigation.benchmark.places import EYE, ROBOT
 from gloam.navigation.benchmark.pool import Died, local_results
 from gloam.navigation.benchmark.request import Request
+from gloam.navigation.benchmark.visibility import PROBE, VisibilityMeter, visibility_probe
 from gloam.navigation.planners.goal_image import own_weights
 from gloam.navigation.plugins import load_plugin
+
+from navigation_scene import arena
 
 ROOT = Path(__file__).resolve().parents[2]
 COMMANDS = ROOT / "tools/navigation/commands.py"
@@ -187,6 +194,44 @@ def await_(condition: Callable[[], object], seconds: float = 120) -> None:
     while not condition():
         assert time.monotonic() < deadline
         time.sleep(0.02)
+
+
+class _Probe:
+    def __init__(self, *values: float) -> None:
+        self._values = list(values)
+
+    def open(self) -> _Probe:
+        return self
+
+    def waiting(self) -> Iterator[Any]:
+        while self._values:
+            yield SimpleNamespace(values=[self._values.pop(0)])
+
+
+def test_visibility_is_of_the_mean_extinction() -> None:
+    meter = VisibilityMeter(SimpleNamespace(sensors={PROBE: _Probe(10.0, 30.0)}))  # type: ignore[arg-type]
+    assert meter.mean() is None and meter.least() is None
+    meter.sample()
+    meter.sample()
+    assert meter.mean() == pytest.approx(15.0) and meter.least() == pytest.approx(10.0)
+
+
+@pytest.mark.parametrize(("weather", "metres"), [({"visibility": 12, "medium": "fog"}, 12.0), ({}, 100_000.0)])
+def test_visibility_is_that_of_the_weather(weather: dict[str, Any], metres: float) -> None:
+    world = arena(probe=[visibility_probe(f"{ROBOT}/trunk", EYE)], **({"weather": weather} if weather else {})).compile()
+    hashes = []
+    for measures in (True, False):
+        with gloam.Simulation(world, seed=1) as sim:
+            meter = VisibilityMeter(sim) if measures else None
+            sim.run_until(time=1.6)
+            if meter is not None:
+                meter.sample()
+                assert meter.mean() == pytest.approx(metres, rel=0.01) and meter.least() == pytest.approx(metres, rel=0.01)
+            if measures:
+                camera = list(world.cameras).index("go/front")
+                assert np.allclose(sim.memory.array("cam_pos")[camera], EYE), "the probe is at the camera"
+            hashes.append(sim.hash)
+    assert hashes[0] == hashes[1], "measuring changes nothing"
 
 
 class Bench:

@@ -7,7 +7,7 @@ import math
 import resource
 import time
 from collections import Counter
-from contextlib import ExitStack
+from contextlib import ExitStack, closing
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -23,8 +23,9 @@ from .demonstration import map_of
 from .key import Key
 from .options import create
 from .places import CAMERA, LIDAR, RADIUS, ROBOT, TOP_SPEED, Pair, world_of
+from .visibility import PROBE, VisibilityMeter
 
-LOG_TOPICS = ("/clock", "/tf*")
+LOG_TOPICS = ("/clock", "/tf*", f"/{PROBE}")
 _STAND = 0.3  # the quadruped's height at the start [m]
 _BEGIN = 1.0  # of the planner's time: until then the robot comes to rest on its feet [s]
 _STUCK_TIME, _STUCK_REACH = 15.0, 0.25  # an episode ends when the robot has stayed within so many metres [s], [m]
@@ -175,8 +176,14 @@ def _drive(spec: EpisodeSpec, pair: Pair, folder: Path, maps: Path, limit: float
             if spec.log:
                 stack.enter_context(sim.record(folder / "run.mcap", LOG_TOPICS, overwrite=True))
             _stand(sim, pair)
-            driver.run(task, _BEGIN + limit, watch)
-        return _measured(sim, driver, watch)
+            meter = stack.enter_context(closing(VisibilityMeter(sim)))
+
+            def ends(sim: gloam.Simulation) -> bool:
+                meter.sample()
+                return watch(sim)
+
+            driver.run(task, _BEGIN + limit, ends)
+        return _measured(sim, driver, watch) | {"visibility_mean": meter.mean(), "visibility_min": meter.least()}
 
 
 def _stand(sim: gloam.Simulation, pair: Pair) -> None:
@@ -194,9 +201,8 @@ def _measured(sim: gloam.Simulation, driver: Driver, watch: Watch) -> dict[str, 
     return {
         "outcome": outcome, "success": outcome == "success", "time": end - _BEGIN, "path_length": watch.length,
         "final_distance": left, "collisions": watch.touched.total(), "collisions_by_object": watch.touched.by_object,
-        "visibility_mean": None, "visibility_min": None, "plans": stats.plans, "late": stats.late,
-        "invalid": stats.invalid, "message": stats.error, "hash": f"{sim.hash:#018x}",
-        "track": watch.track(), "touches": watch.touched.places,
+        "plans": stats.plans, "late": stats.late, "invalid": stats.invalid, "message": stats.error,
+        "hash": f"{sim.hash:#018x}", "track": watch.track(), "touches": watch.touched.places,
     }  # fmt: skip
 
 
