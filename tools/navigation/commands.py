@@ -141,6 +141,7 @@ def _add_bench(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     option("--n", type=int, default=100, help="episodes of each planner, scene and level; default: %(default)s")
     option("--seed", type=int, default=1, help="default: %(default)s")
     option("--tier", default="interactive", choices=("interactive", "path", "direct"), help="of images; default: %(default)s")
+    option("--check-tier", type=int, default=0, metavar="N", help="compare the first N episodes of each cell with the path tier")
     option("--out", default="results/navigation", help="folder of the results; default: %(default)s")
     option("--workers", type=int, default=0, help="processes; default: one for two processors")
     option("--no-log", action="store_true", help="do not record a log of each episode")
@@ -150,21 +151,33 @@ def _add_bench(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
 
 
 def _bench(given: argparse.Namespace) -> int:
-    from gloam.navigation.benchmark.cost import cost_lines
-    from gloam.navigation.benchmark.report import write_report
-    from gloam.navigation.benchmark.request import machine_name
-    from gloam.navigation.benchmark.runner import Workers, run
-    from gloam.navigation.benchmark.videos import render_videos
-
-    request, out, begin = _request(given), Path(given.out), time.monotonic()
+    request, out = _request(given), Path(given.out)
     try:
-        results = run(request, out, Workers(given.workers), _tell)
+        return _run(given, request, out)
     except KeyboardInterrupt:
         done = sum(1 for _ in out.glob("episodes/*/*/*/[!.]*/episode.json"))
         _tell(f"gloam: {done} episodes are complete in {out}; the same command continues")
         raise
+
+
+def _run(given: argparse.Namespace, request: Request, out: Path) -> int:
+    from gloam.navigation.benchmark.cost import cost_lines
+    from gloam.navigation.benchmark.report import write_report
+    from gloam.navigation.benchmark.request import machine_name
+    from gloam.navigation.benchmark.runner import Workers, run
+    from gloam.navigation.benchmark.tiers import FOLDER, tier_lines, tier_request, write_tiers
+    from gloam.navigation.benchmark.videos import render_videos
+
+    begin, workers = time.monotonic(), Workers(given.workers)
+    path_request = tier_request(request, given.check_tier) if given.check_tier else None
+    results = run(request, out, workers, _tell)
+    if path_request is not None:
+        results += run(path_request, out / FOLDER, workers, _tell)
     for line in cost_lines(results, time.monotonic() - begin, machine_name()):
         _tell(line)
+    if path_request is not None:
+        for line in tier_lines(write_tiers(out), request.tier):
+            print(line)
     problems = [] if given.no_report or given.no_videos else render_videos(out, _tell)
     for file in [] if given.no_report else write_report(out):
         print(file)
