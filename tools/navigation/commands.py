@@ -144,6 +144,7 @@ def _add_bench(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     option("--check-tier", type=int, default=0, metavar="N", help="compare the first N episodes of each cell with the path tier")
     option("--out", default="results/navigation", help="folder of the results; default: %(default)s")
     option("--workers", type=int, default=0, help="processes; default: one for two processors")
+    option("--ray", default="", metavar="ADDRESS", help='Ray cluster that runs episodes: "auto" or ray://HOST:PORT')
     option("--no-log", action="store_true", help="do not record a log of each episode")
     option("--no-videos", action="store_true", help="do not render the median and the worst episode of each cell")
     option("--no-report", action="store_true", help="run the episodes only")
@@ -168,7 +169,7 @@ def _run(given: argparse.Namespace, request: Request, out: Path) -> int:
     from gloam.navigation.benchmark.tiers import FOLDER, tier_lines, tier_request, write_tiers
     from gloam.navigation.benchmark.videos import render_videos
 
-    begin, workers = time.monotonic(), Workers(given.workers)
+    begin, workers = time.monotonic(), Workers(given.workers, given.ray)
     path_request = tier_request(request, given.check_tier) if given.check_tier else None
     results = run(request, out, workers, _tell)
     if path_request is not None:

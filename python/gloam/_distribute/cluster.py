@@ -6,14 +6,16 @@ import importlib
 import os
 import time
 import warnings
-from collections.abc import Callable, Iterator
+from collections import deque
+from collections.abc import Callable, Generator, Iterator
 from contextlib import contextmanager
-from typing import Any
+from typing import Any, TypeVar
 
 from ..errors import PartialError, UsageError
 from .jobs import Failure, Job, work
 from .manifest import Manifest
 
+T = TypeVar("T")
 Tell = Callable[[str, float, float, float], Any] | None  # task, share done, seconds, seconds left; False stops
 _LOOK = 0.2  # [s] between looks at signals and progress
 _ONE_MACHINE = "RAY_ENABLE_WINDOWS_OR_OSX_CLUSTER"  # 0: all its processes listen on loopback
@@ -81,7 +83,8 @@ def cluster(address: str | None, workers: int | None) -> Iterator[Any]:
         ray.shutdown()
 
 
-def _set_threads(count: int) -> None:
+def set_threads(count: int) -> None:
+    """gloam.set_thread_count, for workers: it is imported there."""
     import gloam
 
     gloam.set_thread_count(count)
@@ -109,37 +112,56 @@ class _Progress:
 def run_tasks(ray: Any, manifest: Manifest, job: Job, cpus: int, retries: int, tell: Tell) -> None:
     """Runs all unfinished tasks of the list. Failures are collected in manifest.errors; the other tasks continue.
 
-    The task of a worker that dies (killed, out of memory) is repeated up to `retries` times. Few tasks are queued in
-    the cluster at once, so that a cancelled call leaves little behind.
+    The task of a worker that dies (killed, out of memory) is repeated up to `retries` times.
     """
     missing = manifest.missing()
     progress = _Progress(tell, len(manifest.seeds), len(manifest.seeds) - len(missing))
     remote = ray.remote(num_cpus=cpus, max_retries=retries)(work)
     sent = _send(ray, job)
-    waiting = list(reversed(missing))
-    running: dict[Any, int] = {}
+
+    def submit(index: int) -> Any:
+        return remote.remote(
+            sent, str(manifest.out), manifest.folder(index).name, manifest.seeds[index], cpus, set_threads
+        )
+
     try:
-        while waiting or running:
-            slots = max(1, int(ray.cluster_resources().get("CPU", 1)) // cpus) + 1
-            while waiting and len(running) < slots:
-                index = waiting.pop()
-                made = remote.remote(
-                    sent, str(manifest.out), manifest.folder(index).name, manifest.seeds[index], cpus, _set_threads
-                )
-                running[made] = index
-            ready, _ = ray.wait(list(running), num_returns=1, timeout=_LOOK)
-            for one in ready:
-                index = running.pop(one)
-                failure = _outcome(ray, one)
+        for finished in as_they_finish(ray, submit, deque(missing), cpus):
+            if finished is not None:
+                index, reference = finished
+                failure = _outcome(ray, reference)
                 if failure is not None:
                     manifest.errors[index] = failure.error
                 manifest.write()
                 progress.done += 1
             progress.tell()
     finally:
+        manifest.write()
+
+
+def as_they_finish(
+    ray: Any, submit: Callable[[T], Any], waiting: deque[T], cpus: int
+) -> Generator[tuple[T, Any] | None, None, None]:
+    """(task, reference to its result) of each task as it finishes, or None when nothing has finished for a while, so that
+    callers can look after signals and progress.
+
+    submit: sends a task that uses `cpus` processors; the caller may append tasks to `waiting` meanwhile. Few tasks are
+    queued in the cluster at once; closing the iterator cancels them.
+    """
+    running: dict[Any, T] = {}
+    try:
+        while waiting or running:
+            slots = max(1, int(ray.cluster_resources().get("CPU", 1)) // cpus) + 1
+            while waiting and len(running) < slots:
+                task = waiting.popleft()
+                running[submit(task)] = task
+            ready, _ = ray.wait(list(running), num_returns=1, timeout=_LOOK)
+            for one in ready:
+                yield running.pop(one), one
+            if not ready:
+                yield None
+    finally:
         for one in running:
             ray.cancel(one, force=True)
-        manifest.write()
 
 
 def _send(ray: Any, job: Job) -> Any:

@@ -25,6 +25,7 @@ from gloam._distribute.manifest import publish
 
 from ..plugins import load_plugin
 from .episode import EpisodeSpec, run_episode
+from .on_cluster import cluster_results
 from .options import check_planners
 from .places import Course
 from .pool import Died, local_results
@@ -37,14 +38,18 @@ _PART = "."  # begins the names of folders that are being written
 
 @dataclass(frozen=True)
 class Workers:
-    """Where episodes run. count: processes of this machine, 0 = one for two processors."""
+    """Where episodes run. count: processes of this machine, 0 = one for two processors; cluster: address of a Ray cluster
+    that runs them instead, "" = none."""
 
     count: int = 0
+    cluster: str = ""
 
     def results(
         self, do: Callable[[EpisodeSpec], Result], specs: deque[EpisodeSpec]
     ) -> Generator[tuple[EpisodeSpec, Result | Died], None, None]:
         """Results as they come; specs may grow meanwhile."""
+        if self.cluster:
+            return cluster_results(do, specs, self.cluster)
         return local_results(do, specs, min(self.count or max(1, (os.cpu_count() or 1) // 2), len(specs)))
 
 
