@@ -10,6 +10,7 @@ import numpy as np
 import gloam
 
 from .grid import Grid
+from .ground import Ground
 from .planner import Array
 
 _PLANE, _HFIELD = 0, 1  # mjtGeom
@@ -27,10 +28,12 @@ def free_space(
 
     ignore: bodies that are not obstacles (MuJoCo ids); radius, cell: [m]; heights: geoms entirely below or above them
     are not obstacles [m]. Obstacles are approximated by their bounding boxes. In generated places only the floors are
-    free space. Errors: UsageError if there are no walls, or no room between them.
+    free space; on the ground of a terrain, heights are above it, and Ground.is_hard() blocks slopes and water.
+    Errors: UsageError if there are no walls, or no room between them.
     """
-    boxes, floors = _boxes(world, ignore, heights)
-    corners = (floors if len(floors) > 0 else boxes).reshape(-1, 2)
+    ground = None if any(_FLOOR.search(name) for name in world.info["geoms"]) else Ground.of(world)
+    boxes, floors = _boxes(world, ignore, heights, ground)
+    corners = ground.corners if ground else (floors if len(floors) > 0 else boxes).reshape(-1, 2)
     if len(corners) == 0:
         raise gloam.UsageError("the scene has no walls, so the extent of its floor is unknown")
     low, high = corners.min(axis=0), corners.max(axis=0)
@@ -39,6 +42,8 @@ def free_space(
     y = low[1] + cell * np.arange(rows)
     points = np.stack(np.meshgrid(x, y), axis=-1)
     blocked = np.full((rows, columns), len(floors) > 0)
+    if ground is not None:
+        blocked |= ground.is_hard(points)
     for floor in floors:
         blocked &= _distance_to_box(points, floor) > 0.5 * cell
     for box in boxes:
@@ -67,7 +72,9 @@ def robot_bodies(world: gloam.World, robot: str) -> list[int]:
     return [i for i, name in enumerate(world.bodies) if name.startswith(f"{robot}/")]
 
 
-def _boxes(world: gloam.World, ignore: Collection[int], heights: tuple[float, float]) -> tuple[Array, Array]:
+def _boxes(
+    world: gloam.World, ignore: Collection[int], heights: tuple[float, float], ground: Ground | None
+) -> tuple[Array, Array]:
     """Outlines of all obstacles and of all floors seen from above, (n, 4 corners in order, 2) each [m]."""
     with gloam.Simulation(world) as sim:
         sim.step()
@@ -83,7 +90,8 @@ def _boxes(world: gloam.World, ignore: Collection[int], heights: tuple[float, fl
         if _FLOOR.search(name):
             floors.append(_outline(corners))
         is_solid = bool(contype[geom] or affinity[geom])
-        if is_solid and corners[:, 2].max() > heights[0] and corners[:, 2].min() < heights[1]:
+        base = float(ground.height(corners[:, :2].mean(axis=0))) if ground else 0.0
+        if is_solid and corners[:, 2].max() > base + heights[0] and corners[:, 2].min() < base + heights[1]:
             boxes.append(_outline(corners))
     return np.array(boxes).reshape(-1, 4, 2), np.array(floors).reshape(-1, 4, 2)
 

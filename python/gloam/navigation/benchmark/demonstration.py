@@ -12,8 +12,9 @@ import numpy as np
 import gloam
 from gloam._distribute.manifest import publish
 
+from ..ground import height_at
 from ..topological_map import MapSource, Node, TopologicalMap
-from .places import CAMERA, ROBOT, TOP_SPEED, Pair, world_of
+from .places import CAMERA, ROBOT, TOP_SPEED, Pair, ground_of, world_of
 
 SPACING = 0.5  # of nodes [m]
 _SIZE = (160, 120)  # [px]
@@ -36,13 +37,14 @@ def poses_along(pair: Pair, spacing: float = SPACING) -> list[tuple[float, float
 def demonstrate(place: str, pair: Pair) -> TopologicalMap:
     """The map of a pair: the robot stands at each node, at level none. Node times correspond to a walk at TOP_SPEED."""
     world = world_of(place, "none")
+    ground = ground_of(place)
     nodes: list[Node] = []
     with gloam.Simulation(world) as sim:
         first = int(sim.memory.array("jnt_qposadr")[_free_joint(sim)])
         rest = np.array(sim.memory.array("qpos"))
         for k, (x, y, yaw) in enumerate(poses_along(pair)):
             qpos = rest.copy()
-            qpos[first : first + 2] = x, y
+            qpos[first : first + 3] = x, y, rest[first + 2] + height_at(ground, x, y)
             qpos[first + 3 : first + 7] = gloam.yaw_quaternion(yaw)
             frame = sim.cameras[CAMERA].render(("rgb",), width=_SIZE[0], height=_SIZE[1], qpos=qpos, tier="interactive")
             nodes.append(Node(np.array(frame.rgb), (x, y, yaw), k * SPACING / TOP_SPEED))

@@ -17,16 +17,17 @@ import numpy as np
 import gloam
 
 from ..driver import WATCH_PERIOD, Driver, Rig
+from ..ground import Ground, height_at
 from ..paths import Point
 from ..planner import Task
 from .demonstration import map_of
 from .key import Key
 from .options import create
-from .places import CAMERA, LIDAR, RADIUS, ROBOT, TOP_SPEED, Pair, world_of
+from .places import CAMERA, LIDAR, RADIUS, ROBOT, TOP_SPEED, Pair, ground_of, world_of
 from .visibility import PROBE, VisibilityMeter
 
 LOG_TOPICS = ("/clock", "/tf*", f"/{PROBE}")
-_STAND = 0.3  # the quadruped's height at the start [m]
+_STAND = 0.3  # the quadruped's height above the ground at the start [m]
 _BEGIN = 1.0  # of the planner's time: until then the robot comes to rest on its feet [s]
 _STUCK_TIME, _STUCK_REACH = 15.0, 0.25  # an episode ends when the robot has stayed within so many metres [s], [m]
 _LOW = 0.05  # contacts below are steps on rugs and sills [m]
@@ -62,7 +63,8 @@ class EpisodeSpec:
 class Touched:
     """Counts collisions by object: a body counts once, and again after half a second without contact."""
 
-    def __init__(self) -> None:
+    def __init__(self, ground: Ground | None = None) -> None:
+        self._ground = ground
         self.places: list[tuple[float, float, float, str]] = []  # of collisions: time [s], x, y [m], object
         self.last: dict[str, float] = {}
 
@@ -72,13 +74,15 @@ class Touched:
             names = contact["geoms"]
             own = [name.startswith(f"{ROBOT}/") for name in names]
             is_ground = abs(float(np.asarray(contact["normal"])[2])) > math.sqrt(0.5)
-            if own[0] == own[1] or is_ground or float(np.asarray(contact["position"])[2]) < _LOW or float(np.linalg.norm(contact["force"])) <= 0:
+            x, y, z = (float(v) for v in contact["position"])
+            if own[0] == own[1] or is_ground or float(np.linalg.norm(contact["force"])) <= 0:
+                continue
+            if z < height_at(self._ground, x, y) + _LOW:
                 continue
             other = names[1] if own[0] else names[0]
             body = other.rpartition("/")[0] or other
             if sim.time - self.last.get(body, -math.inf) > _FORGET:
-                x, y, _ = (round(float(v), 3) for v in np.asarray(contact["position"]))
-                self.places.append((round(sim.time, 3), x, y, _object_of(other)))
+                self.places.append((round(sim.time, 3), round(x, 3), round(y, 3), _object_of(other)))
             self.last[body] = sim.time
 
     @property
@@ -105,8 +109,8 @@ def _object_of(geom: str) -> str:
 class Watch:
     """Follows an episode; called every 50 ms. True ends it."""
 
-    def __init__(self, goal: Point) -> None:
-        self.goal, self.touched = goal, Touched()
+    def __init__(self, goal: Point, ground: Ground | None = None) -> None:
+        self.goal, self.touched = goal, Touched(ground)
         self.length, self.outcome = 0.0, ""
         self.places: list[tuple[float, Point]] = []
 
@@ -170,12 +174,13 @@ def _drive(spec: EpisodeSpec, pair: Pair, folder: Path, maps: Path, limit: float
     with gloam.Simulation(world, seed=spec.pair_seed) as sim:
         rig = Rig(ROBOT, CAMERA, LIDAR, {"tier": spec.tier})
         driver = Driver(sim, rig, planner)
-        watch = Watch(pair.goal)
+        ground = ground_of(spec.place)
+        watch = Watch(pair.goal, ground)
         with ExitStack() as stack:
             stack.callback(driver.close)
             if spec.log:
                 stack.enter_context(sim.record(folder / "run.mcap", LOG_TOPICS, overwrite=True))
-            _stand(sim, pair)
+            _stand(sim, pair, ground)
             meter = stack.enter_context(closing(VisibilityMeter(sim)))
 
             def ends(sim: gloam.Simulation) -> bool:
@@ -186,8 +191,9 @@ def _drive(spec: EpisodeSpec, pair: Pair, folder: Path, maps: Path, limit: float
         return _measured(sim, driver, watch) | {"visibility_mean": meter.mean(), "visibility_min": meter.least()}
 
 
-def _stand(sim: gloam.Simulation, pair: Pair) -> None:
-    sim.robots[ROBOT].place((pair.start[0], pair.start[1], _STAND), yaw=pair.start[2])
+def _stand(sim: gloam.Simulation, pair: Pair, ground: Ground | None) -> None:
+    x, y, yaw = pair.start
+    sim.robots[ROBOT].place((x, y, height_at(ground, x, y) + _STAND), yaw=yaw)
     sim.run_until(time=_BEGIN)
 
 

@@ -12,6 +12,7 @@ import numpy as np
 import gloam
 
 from ..free_space import free_space, robot_bodies, shared_space
+from ..ground import Ground
 from ..paths import Point, length_of, smoothed
 from ..planner import Array
 from .visibility import visibility_probe
@@ -33,6 +34,7 @@ PLACES: dict[str, dict[str, Any]] = {
     "warehouse": {"warehouse": {"seed": 2, "length": 30, "width": 20}},
     "office": {"office": {"seed": 2}},
     "tunnel": {"tunnel": {"seed": 1}},
+    "terrain": {"terrain": {"seed": 1, "length": 50, "width": 40}},
 }
 
 
@@ -68,6 +70,12 @@ def scene_of(place: str, level: str) -> gloam.Scene:
 def world_of(place: str, level: str) -> gloam.World:
     """The compiled scene."""
     return scene_of(place, level).compile()
+
+
+@lru_cache
+def ground_of(place: str) -> Ground | None:
+    """Its uneven ground, which is the same at all levels."""
+    return Ground.of(world_of(place, "none"))
 
 
 @dataclass(frozen=True)
