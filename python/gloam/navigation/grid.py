@@ -58,14 +58,27 @@ class Grid:
         left = ~self.blocked
         best = np.zeros_like(left)
         while left.any():
-            row, column = np.argwhere(left)[0]
-            region = np.isfinite(self.distances(self.origin + self.cell * np.array([column, row])))
+            row, column = np.argwhere(left)[0].tolist()
+            region = self._region(row, column)
             left &= ~region
             if region.sum() > best.sum():
                 best = region
         if not best.any():
             raise gloam.UsageError("the scene has no free space")
         self.blocked = ~best
+
+    def _region(self, row: int, column: int) -> NDArray[np.bool_]:
+        """The free cells that are connected with a free cell."""
+        rows, columns = self.blocked.shape
+        region = np.zeros((rows, columns), bool)
+        region[row, column] = True
+        while True:
+            padded = np.pad(region, 1)
+            grown = np.logical_or.reduce([padded[1 + dy : 1 + dy + rows, 1 + dx : 1 + dx + columns] for dy, dx, _ in _STEPS])
+            grown = (grown | region) & ~self.blocked
+            if np.array_equal(grown, region):
+                return region
+            region = grown
 
     def clearance(self, most: float) -> Array:
         """Distance of each cell to the nearest blocked one, at most `most` [m]; chessboard steps, so up to 30 % short."""
