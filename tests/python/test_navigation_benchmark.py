@@ -115,11 +115,12 @@ def test_a_planner_that_cannot_start_is_an_error(course: Course, tmp_path: Path)
 class _Breaks(_Tired):
     """Raises an exception when an episode begins."""
 
-    def __init__(self, error: str = "") -> None:
-        self._error = error
+    def __init__(self, error: str = "", file: str = "") -> None:
+        full, gone = OSError(errno.ENOSPC, "disk is full"), ConnectionResetError("no answer")
+        self._error = {"full": full, "gone": gone, "log": gloam.PartialError("cannot write the log", file)}[error]
 
     def reset(self, task: Task) -> None:
-        raise {"full": OSError(errno.ENOSPC, "disk is full"), "gone": ConnectionResetError("no answer")}[self._error]
+        raise self._error
 
 
 register_planner("breaks", _Breaks)
@@ -132,6 +133,9 @@ def test_a_full_disk_is_no_failure_of_the_planner(course: Course, tmp_path: Path
     gone = replace(spec, options=(("error", "gone"),))
     result = run_episode(gone, course.pair(spec.pair_seed), tmp_path / "f", tmp_path / "maps")
     assert result["outcome"] == "error" and "no answer" in result["message"]
+    log = replace(spec, options=(("error", "log"), ("file", str(tmp_path / "g/run.mcap"))))
+    with pytest.raises(gloam.PartialError, match="cannot write the log"):
+        run_episode(log, course.pair(spec.pair_seed), tmp_path / "g", tmp_path / "maps")
 
 
 class _Robot:

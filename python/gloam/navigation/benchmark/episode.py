@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import json
 import math
 import resource
@@ -143,7 +144,7 @@ class Watch:
 
 def run_episode(spec: EpisodeSpec, pair: Pair, folder: Path, maps: Path) -> dict[str, Any]:
     """Runs it and writes episode.json and run.mcap into a new folder. An exception of the planner's creation or reset
-    becomes an episode of outcome "error". Errors: OSError if a file cannot be written."""
+    becomes an episode of outcome "error". Errors: OSError, gloam.Error if a file cannot be written."""
     begin, cpu = time.perf_counter(), _cpu_seconds()
     limit = 10.0 + 2.5 * pair.shortest / TOP_SPEED
     result: dict[str, Any] = {
@@ -154,8 +155,8 @@ def run_episode(spec: EpisodeSpec, pair: Pair, folder: Path, maps: Path) -> dict
     try:
         result |= _drive(spec, pair, folder, maps, limit)
     except Exception as error:  # of anybody's planner
-        if isinstance(error, OSError) and not isinstance(error, ConnectionError | TimeoutError):
-            raise  # a full disk, for example, is no failure of the planner
+        if _is_of_storage(error, folder, maps):
+            raise
         result |= _failed(f"{type(error).__name__}: {error}", math.dist(pair.start[:2], pair.goal))
     result |= {
         "wall_seconds": time.perf_counter() - begin,
@@ -164,6 +165,14 @@ def run_episode(spec: EpisodeSpec, pair: Pair, folder: Path, maps: Path) -> dict
     }
     (folder / "episode.json").write_text(json.dumps(result, indent=1, sort_keys=True) + "\n", encoding="utf-8")
     return result
+
+
+def _is_of_storage(error: Exception, *folders: Path) -> bool:
+    """Whether results cannot be written, which is no failure of the planner: the disk is full, or the error names a file in
+    one of the folders."""
+    file = Path(str(getattr(error, "file", "") or getattr(error, "filename", "") or ""))
+    is_full = isinstance(error, OSError) and error.errno in (errno.ENOSPC, errno.EDQUOT)
+    return is_full or any(file.is_relative_to(folder) for folder in folders)
 
 
 def _drive(spec: EpisodeSpec, pair: Pair, folder: Path, maps: Path, limit: float) -> dict[str, Any]:

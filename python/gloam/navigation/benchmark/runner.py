@@ -6,15 +6,14 @@ and runs each episode once.
 
 from __future__ import annotations
 
-import fcntl
 import json
 import os
 import shutil
 import time
 import uuid
 from collections import deque
-from collections.abc import Callable, Generator, Iterator
-from contextlib import closing, contextmanager
+from collections.abc import Callable, Generator
+from contextlib import closing
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
@@ -25,6 +24,7 @@ from gloam._distribute.manifest import publish
 
 from ..plugins import load_plugin
 from .episode import EpisodeSpec, run_episode
+from .files import locked
 from .on_cluster import cluster_results
 from .options import check_planners
 from .places import Course
@@ -66,7 +66,12 @@ def run(
     """
     request.check()
     check_planners(request.planners, request.options)  # before the folder knows the request
-    with _folder(request, out):
+    try:
+        out.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise gloam.IoError(f"cannot create the folder: {error.strerror}", str(out)) from error
+    with locked(out):
+        request.keep(out)
         missing = [spec for spec in request.specs() if not _file(out, spec).is_file()]
         if missing:
             _remove_parts(out)
@@ -80,23 +85,6 @@ def run(
 
 def _file(out: Path, spec: EpisodeSpec) -> Path:
     return out / "episodes" / spec.path / "episode.json"
-
-
-@contextmanager
-def _folder(request: Request, out: Path) -> Iterator[None]:
-    """Locks the folder, and keeps its request."""
-    try:
-        out.mkdir(parents=True, exist_ok=True)
-        lock = (out / ".lock").open("w")
-    except OSError as error:
-        raise gloam.IoError(f"the folder cannot be created: {error.strerror}", str(out)) from None
-    with lock:
-        try:
-            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except BlockingIOError:
-            raise gloam.UsageError(f"{out} is in use by another benchmark") from None
-        request.keep(out)
-        yield
 
 
 def _remove_parts(out: Path) -> None:

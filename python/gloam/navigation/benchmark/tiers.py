@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
 import gloam
 
+from .files import replace_file
 from .options import check_planners
 from .request import Request
 from .results import Episode, Results, load_results
@@ -99,14 +99,9 @@ def _mcnemar(pairs: Sequence[tuple[Episode, Episode]]) -> float:
 
 
 def write_tiers(folder: Path) -> list[TierRow]:
-    """Writes tiers.csv into the folder of a benchmark whose tier has been checked. Errors: as load_results(); OSError."""
+    """Writes tiers.csv into the folder of a benchmark whose tier has been checked. Errors: as load_results()."""
     rows = tier_rows(folder)
-    part = folder / f".{FILE}.{os.getpid()}"
-    try:
-        write_csv(part, [_columns(row) for row in rows])
-        part.replace(folder / FILE)
-    finally:
-        part.unlink(missing_ok=True)
+    replace_file(folder / FILE, lambda path: write_csv(path, [_columns(row) for row in rows]))
     return rows
 
 
