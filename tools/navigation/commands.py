@@ -137,7 +137,7 @@ def _add_bench(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     option("--set", action="append", default=[], metavar="PLANNER.OPTION=VALUE", help="option of a planner, see below; repeatable")
     option("--plugin", action="append", default=[], help="Python file or module that registers planners; repeatable")
     option("--scenes", default="house,warehouse", help="also office, tunnel and terrain; default: %(default)s")
-    option("--levels", default="none,minor,major", help="default: %(default)s")
+    option("--levels", default="none,minor,major", help="also dark; default: %(default)s")
     option("--n", type=int, default=100, help="episodes of each planner, scene and level; default: %(default)s")
     option("--seed", type=int, default=1, help="default: %(default)s")
     option("--tier", default="interactive", choices=("interactive", "path", "direct"), help="of images; default: %(default)s")

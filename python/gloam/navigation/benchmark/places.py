@@ -18,6 +18,7 @@ from ..planner import Array
 from .visibility import visibility_probe
 
 LEVELS = ("none", "minor", "major")
+ALL_LEVELS = (*LEVELS, "dark")  # dark: as none, at night with all lamps out
 ROBOT, CAMERA, LIDAR = "go", "go/front", "lidar"
 EYE = (0.306, 0.0, 0.0165)  # of the camera in the trunk, as in quadruped.xml [m]
 TOP_SPEED = 0.5  # [m/s]
@@ -40,7 +41,7 @@ PLACES: dict[str, dict[str, Any]] = {
 
 def scene_of(place: str, level: str) -> gloam.Scene:
     """The scene of a place at a level of adversity, with the quadruped and its walking policy. Errors: NotFoundError."""
-    for name, names, kind in ((place, PLACES, "scene"), (level, LEVELS, "level")):
+    for name, names, kind in ((place, PLACES, "scene"), (level, ALL_LEVELS, "level")):
         if name not in names:
             raise gloam.NotFoundError(f"there is no {kind} '{name}'; there are: {', '.join(names)}")
     assets = gloam.home() / "assets"
@@ -61,7 +62,9 @@ def scene_of(place: str, level: str) -> gloam.Scene:
         "probe": [visibility_probe(f"{ROBOT}/trunk", EYE)],
         "lidar": [{"name": LIDAR, "body": f"{ROBOT}/lidar_mount", "preset": "VLP-16", "rate": 10, "motion_keys": _MOTION_KEYS}],
     }
-    if level != "none":
+    if level == "dark":
+        tables |= {"blackout": {"at": 0}, "sky": {"luminance": 0}}
+    elif level != "none":
         tables["adversity"] = {"level": level}
     return gloam.Scene.from_dict(tables)
 

@@ -18,7 +18,7 @@ from ..planner import planner_names
 from .checks import Fields, read_object
 from .episode import EpisodeSpec
 from .options import File, Option, arguments, read_files, read_options, type_of
-from .places import LEVELS, PLACES
+from .places import ALL_LEVELS, LEVELS, PLACES
 
 REQUEST_FILE = "request.json"
 T = TypeVar("T")
@@ -49,7 +49,7 @@ class Request:
     def check(self) -> None:
         """Errors: NotFoundError for an unknown planner, scene or level; UsageError for numbers out of range."""
         for kind, asked, known in (
-            ("planner", self._types(), planner_names()), ("scene", self.scenes, PLACES), ("level", self.levels, LEVELS),
+            ("planner", self._types(), planner_names()), ("scene", self.scenes, PLACES), ("level", self.levels, ALL_LEVELS),
         ):  # fmt: skip
             for name in asked:
                 if name not in known:
