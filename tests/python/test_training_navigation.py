@@ -115,7 +115,7 @@ def test_views_follow_the_seed() -> None:
     assert len(first) >= 200 and not np.array_equal(first.pose[:50], other.pose[:50])
 
 
-def test_pairs_see_each_other_across_free_space() -> None:
+def test_pairs_overlap_across_free_space() -> None:
     space = two_rooms()
     rng = np.random.default_rng(2)
     poses = np.array([[*space.sample(rng), rng.uniform(-np.pi, np.pi)] for _ in range(400)])
@@ -124,14 +124,16 @@ def test_pairs_see_each_other_across_free_space() -> None:
     assert len(found.anchor) > 400 and np.bincount(found.anchor).max() <= 8
     start, offset = poses[found.anchor], poses[found.goal, :2] - poses[found.anchor, :2]
     bearing = np.arctan2(offset[:, 1], offset[:, 0])
-    assert np.abs(labels.wrap(bearing - start[:, 2])).max() <= rule.aside
-    assert np.abs(labels.wrap(poses[found.goal, 2] - bearing)).max() <= rule.turned
-    assert np.allclose(0.1 * found.dist, np.hypot(*offset.T)) and found.dist.max() <= 25
+    aside = np.abs(labels.wrap(bearing - start[:, 2]))
+    assert ((aside <= rule.aside) == found.ahead).all() and 0.2 < found.ahead.mean() < 0.8
+    assert np.abs(labels.wrap(poses[found.goal, 2] - start[:, 2])).max() <= rule.turned
+    turning = np.maximum(aside - np.pi / 4, 0) / 0.25
+    assert np.allclose(found.dist, 10 * np.hypot(*offset.T) + turning, atol=1e-4) and found.dist.max() <= 22 + 9.5
     through = (start[:, 0] - 5) * (poses[found.goal, 0] - 5) < 0  # from one room into the other
     cross = start[:, 1] + (5 - start[:, 0]) / np.where(through, offset[:, 0], 1.0) * offset[:, 1]
     assert through.any() and (np.abs(cross[through] - 2.95) < 0.8).all(), "only through the door"
     left = found.action[:, -1, 1] > 0
-    assert (left == (labels.wrap(bearing - start[:, 2]) > 0))[np.abs(found.action[:, -1, 1]) > 0.05].all()
+    assert (left == (labels.wrap(bearing - start[:, 2]) > 0))[(np.abs(found.action[:, -1, 1]) > 0.05) & found.ahead].all()
     none = pairs.pairs_of(poses[:1], space, np.random.default_rng(1), rule)
     assert none.action.shape == (0, 5, 4) and len(none.dist) == 0
 

@@ -28,6 +28,7 @@ def folder(tmp_path: Path) -> Path:
     anchor = np.flatnonzero(step < 19)
     table |= {"pair_anchor": anchor, "pair_goal": anchor + 1, "pair_dist": np.full(len(anchor), 3.0, np.float32)}
     table["pair_action"] = np.full((len(anchor), 5, 4), 7.0, np.float32)
+    table["pair_ahead"] = np.ones(len(anchor), bool)
     names = np.array([f"house_{number}" for number in range(3)])
     np.savez(tmp_path / "routes.npz", **table, names=names, view_spacing=np.float32(0.2))
     images = np.broadcast_to(np.arange(count, dtype=np.uint8)[:, None, None, None], (count, 64, 85, 3))

@@ -12,15 +12,18 @@ from torch import Tensor
 
 from .labels import MAX_STEPS, SPACING
 
+TURN = 0.15  # in five steps, from which a view counts as turning [rad]
 MEAN, STD = (0.485, 0.456, 0.406), (0.229, 0.224, 0.225)  # of ImageNet
 
 
 @dataclass(frozen=True)
 class Sampling:
-    """Shares of goals. crossing: any view that the anchor sees, instead of one on its path; far: on the path beyond
-    MAX_STEPS, up to `farthest` steps; negative: elsewhere, at least `apart` [m] away; mixed: of another condition."""
+    """Shares of goals. crossing: any view whose image overlaps, instead of one on the anchor's path; turning: of these,
+    from anchors that turn; far: on the path beyond MAX_STEPS, up to `farthest` steps; negative: elsewhere, at least
+    `apart` [m] away; mixed: of another condition."""
 
-    crossing: float = 0.6
+    crossing: float = 0.5
+    turning: float = 0.5
     far: float = 0.1
     farthest: int = 30
     negative: float = 0.1
@@ -31,7 +34,7 @@ class Sampling:
 @dataclass(frozen=True)
 class Batch:
     """observation, goal: (n, 64, 85, 3) uint8; dist: (n,) steps; action: (n, 5, 4); positive: (n,) bool, false for
-    goals elsewhere, whose action has no meaning; condition: (n,) of the observation; goal_condition: (n,)."""
+    goals elsewhere or behind, whose action has no meaning; condition: (n,) of the observation; goal_condition: (n,)."""
 
     observation: Tensor
     goal: Tensor
@@ -44,13 +47,14 @@ class Batch:
 
 @dataclass(frozen=True)
 class _Aim:
-    """Anchors and their goals: condition, rows of the views, distance [steps], waypoints."""
+    """Anchors and their goals: condition, rows of the views, distance [steps], waypoints, whether these have a meaning."""
 
     condition: Tensor
     anchor: Tensor
     goal: Tensor
     dist: Tensor
     action: Tensor
+    ahead: Tensor
 
 
 class Data:
@@ -93,9 +97,12 @@ class Data:
         self.place, self.route = tensor(table["place"].astype(np.int64)), tensor(route)
         self.along, self.position = tensor(table["along"]), tensor(table["pose"][:, :2])
         self.action = tensor(table["action"])
+        turn = torch.atan2(self.action[:, -1, 3], self.action[:, -1, 2]).abs()
+        self.turning = self.anchors[turn[self.anchors[:, 1]] > TURN]
         self.pair_anchor = tensor(table["pair_anchor"].astype(np.int64))
         self.pair_goal = tensor(table["pair_goal"].astype(np.int64))
         self.pair_dist, self.pair_action = tensor(table["pair_dist"]), tensor(table["pair_action"])
+        self.pair_ahead = tensor(table["pair_ahead"])
         seen = (self.image[:, self.pair_anchor] >= 0) & (self.image[:, self.pair_goal] >= 0)
         self.pairs = torch.nonzero(seen)  # (p, 2): condition, pair
 
@@ -118,7 +125,7 @@ class Data:
         goal_condition = torch.where(negative, stray[:, 0], goal_condition)
         dist = torch.where(negative, torch.full_like(aim.dist, float(MAX_STEPS)), aim.dist)
         seen, sought = self.image[aim.condition, aim.anchor], self.image[goal_condition, goal]
-        return Batch(self.images[seen], self.images[sought], dist, aim.action, ~negative, aim.condition, goal_condition)
+        return Batch(self.images[seen], self.images[sought], dist, aim.action, aim.ahead & ~negative, aim.condition, goal_condition)
 
     def _draw(self, below: int, count: int, generator: torch.Generator) -> Tensor:
         return (torch.rand(count, generator=generator, device=self.device) * below).long().clamp(max=max(below - 1, 0))
@@ -126,6 +133,9 @@ class Data:
     def _ahead(self, count: int, generator: torch.Generator, sampling: Sampling) -> _Aim:
         """Views on the anchors' paths, 0 … MAX_STEPS (far: … farthest) steps ahead."""
         pick = self.anchors[self._draw(len(self.anchors), count, generator)]
+        if len(self.turning):
+            turns = torch.rand(count, generator=generator, device=self.device) < sampling.turning
+            pick = torch.where(turns[:, None], self.turning[self._draw(len(self.turning), count, generator)], pick)
         condition, anchor = pick[:, 0], pick[:, 1]
         draw = torch.rand(count, generator=generator, device=self.device)
         far = torch.rand(count, generator=generator, device=self.device) < sampling.far
@@ -134,22 +144,24 @@ class Data:
         wanted = ((self.along[anchor] + steps * SPACING) / self.spacing).round().long()
         goal = self.first[route] + torch.minimum(wanted.clamp(min=0), self.count[route] - 1)
         dist = ((self.along[goal] - self.along[anchor]) / SPACING).clamp(0, MAX_STEPS)
-        return _Aim(condition, anchor, goal, dist, self.action[anchor])
+        return _Aim(condition, anchor, goal, dist, self.action[anchor], torch.ones_like(far))
 
     def _across(self, count: int, generator: torch.Generator) -> _Aim:
         """Pairs of views, of any drives."""
         if not len(self.pairs):
             none = torch.zeros(count, dtype=torch.long, device=self.device)
-            return _Aim(none, none, none, none.float(), self.action[none])
+            return _Aim(none, none, none, none.float(), self.action[none], none.bool())
         pick = self.pairs[self._draw(len(self.pairs), count, generator)]
         condition, pair = pick[:, 0], pick[:, 1]
         dist = self.pair_dist[pair].clamp(0, MAX_STEPS)
-        return _Aim(condition, self.pair_anchor[pair], self.pair_goal[pair], dist, self.pair_action[pair])
+        return _Aim(condition, self.pair_anchor[pair], self.pair_goal[pair], dist, self.pair_action[pair], self.pair_ahead[pair])
 
 
 def _chosen(first: Tensor, yes: _Aim, no: _Aim) -> _Aim:
-    one = [torch.where(first, getattr(yes, name), getattr(no, name)) for name in ("condition", "anchor", "goal", "dist")]
-    return _Aim(*one, torch.where(first[:, None, None], yes.action, no.action))
+    condition, anchor, goal, dist, ahead = (
+        torch.where(first, getattr(yes, name), getattr(no, name)) for name in ("condition", "anchor", "goal", "dist", "ahead")
+    )
+    return _Aim(condition, anchor, goal, dist, torch.where(first[:, None, None], yes.action, no.action), ahead)
 
 
 def normalised(images: Tensor) -> Tensor:

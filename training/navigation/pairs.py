@@ -1,4 +1,4 @@
-"""Pairs of views of one place of which the first sees the place of the second: goals off the path of a drive."""
+"""Pairs of views of one place whose images overlap: goals off the path of a drive."""
 
 from __future__ import annotations
 
@@ -9,32 +9,34 @@ from numpy.typing import NDArray
 
 from gloam.navigation.grid import Grid
 
-from .labels import SPACING, Path, waypoints, wrap
+from .labels import MAX_TURN, SPACING, Path, waypoints, wrap
 
 Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
 class PairRule:
-    """per_view: pairs of each view, at most; reach: distance of a goal [m]; aside: largest angle between the view's heading
-    and the goal, within the camera's horizontal field of view of 91 degrees [rad]; turned: largest angle between the
-    straight way to the goal and the goal's heading [rad]."""
+    """per_view: pairs of each view, at most; reach: distance of a goal [m]; turned: largest angle between the headings of
+    both [rad], so that the images overlap: the camera's horizontal field of view is 91 degrees; aside: largest angle
+    between the view's heading and the goal for which waypoints have a meaning [rad]: goals behind have a distance only."""
 
-    per_view: int = 16
-    reach: tuple[float, float] = (0.1, 2.5)
-    aside: float = 0.7
-    turned: float = 0.9
+    per_view: int = 24
+    reach: tuple[float, float] = (0.1, 2.2)
+    turned: float = 1.2
+    aside: float = 1.4
 
 
 @dataclass(frozen=True)
 class Pairs:
-    """Rows of a table of n pairs. anchor, goal: rows of the views; dist: length of the straight way [steps]; action:
-    (n, 5, 4) waypoints towards the goal (labels.waypoints)."""
+    """Rows of a table of n pairs. anchor, goal: rows of the views; dist: steps of a pursuit of the straight way, with those
+    in which it turns in place; action: (n, 5, 4) waypoints towards the goal (labels.waypoints); ahead: whether they
+    have a meaning."""
 
     anchor: NDArray[np.int32]
     goal: NDArray[np.int32]
     dist: NDArray[np.float32]
     action: NDArray[np.float32]
+    ahead: NDArray[np.bool_]
 
 
 def pairs_of(poses: Array, space: Grid, rng: np.random.Generator, rule: PairRule) -> Pairs:
@@ -42,21 +44,23 @@ def pairs_of(poses: Array, space: Grid, rng: np.random.Generator, rule: PairRule
     anchors, goals = [], []
     for anchor in range(len(poses)):
         offset = poses[:, :2] - poses[anchor, :2]
-        gap, bearing = np.hypot(offset[:, 0], offset[:, 1]), np.arctan2(offset[:, 1], offset[:, 0])
+        gap = np.hypot(offset[:, 0], offset[:, 1])
         seen = (gap >= rule.reach[0]) & (gap <= rule.reach[1])
-        seen &= np.abs(wrap(bearing - poses[anchor, 2])) <= rule.aside
-        seen &= np.abs(wrap(poses[:, 2] - bearing)) <= rule.turned
+        seen &= np.abs(wrap(poses[:, 2] - poses[anchor, 2])) <= rule.turned
         candidates = rng.permutation(np.flatnonzero(seen))
         found = [goal for goal in candidates[: 2 * rule.per_view] if _is_free(space, poses[anchor, :2], offset[goal])]
         goals += found[: rule.per_view]
         anchors += [anchor] * len(found[: rule.per_view])
     action = [waypoints(Path(poses[[a, g], :2]), poses[a], 0.0) for a, g in zip(anchors, goals, strict=True)]
-    offset = poses[goals, :2] - poses[anchors, :2] if anchors else np.zeros((0, 2))
+    offset = (poses[goals] - poses[anchors]) if anchors else np.zeros((0, 3))
+    bearing = np.abs(wrap(np.arctan2(offset[:, 1], offset[:, 0]) - poses[anchors, 2])) if anchors else np.zeros(0)
+    steps = np.hypot(offset[:, 0], offset[:, 1]) / SPACING + np.maximum(bearing - np.pi / 4, 0.0) / MAX_TURN
     return Pairs(
         np.array(anchors, np.int32),
         np.array(goals, np.int32),
-        (np.hypot(offset[:, 0], offset[:, 1]) / SPACING).astype(np.float32),
+        steps.astype(np.float32),
         np.array(action, np.float32).reshape(-1, 5, 4),
+        bearing <= rule.aside,
     )
 
 
