@@ -41,6 +41,7 @@ class Seeing(Brief):
     """The same with images."""
 
     needs: ClassVar[frozenset[Need]] = frozenset({"image"})
+    uses_map: ClassVar[bool] = True
 
 
 register_planner("seeing", Seeing)

@@ -143,11 +143,13 @@ def test_planners_of_one_type_have_own_names() -> None:
 
 def test_cost_by_planner() -> None:
     results = [
-        {"planner": planner, "wall_seconds": wall, "cpu_seconds": 2 * wall}
+        {"planner": planner, "tier": "direct", "wall_seconds": wall, "cpu_seconds": 2 * wall}
         for planner, wall in (("route", 1.0), ("lidar", 100.0), ("route", 3.0))
     ]
     lines = cost_lines(results, 7.4, "a machine")
-    assert [line.split() for line in lines[1:3]] == [["route", "2", "2.0", "4.0"], ["lidar", "1", "100.0", "200.0"]]
+    assert [line.split() for line in lines[1:3]] == [
+        ["route", "direct", "2", "2.0", "4.0"], ["lidar", "direct", "1", "100.0", "200.0"]
+    ]
     assert lines[3] == "all 3 episodes: 104 s in their processes, 3 min of CPU time; this call took 7.4 s"
     assert len({len(line) for line in lines[:3]}) == 1
 

@@ -16,7 +16,8 @@ _loaded: dict[Path, ModuleType] = {}
 def load_plugin(name: str) -> Path:
     """Imports a file (a name with a slash or the suffix .py), or else an importable module, once per process.
 
-    A file may import its neighbours. Returns the file; of a package, its folder. Errors: gloam.UsageError if it does not exist or raises an exception.
+    A file may import its neighbours. Returns the file; of a package, its folder. Errors: gloam.UsageError if it does not
+    exist or raises an exception.
     """
     try:
         module = _load_file(Path(name).resolve()) if _is_file(name) else importlib.import_module(name)

@@ -14,7 +14,7 @@ from gloam._distribute.manifest import publish
 
 from ..ground import height_at
 from ..topological_map import MapSource, Node, TopologicalMap
-from .places import CAMERA, ROBOT, TOP_SPEED, Pair, ground_of, world_of
+from .places import CAMERA, ROBOT, TOP_SPEED, Pair, ground_of, image_options, world_of
 
 SPACING = 0.5  # of nodes [m]
 _SIZE = (160, 120)  # [px]
@@ -34,8 +34,9 @@ def poses_along(pair: Pair, spacing: float = SPACING) -> list[tuple[float, float
     return [(float(a), float(b), float(c)) for a, b, c in zip(x, y, np.arctan2(dy, dx), strict=True)]
 
 
-def demonstrate(place: str, pair: Pair) -> TopologicalMap:
-    """The map of a pair: the robot stands at each node, at level none. Node times correspond to a walk at TOP_SPEED."""
+def demonstrate(place: str, pair: Pair, tier: str = "interactive") -> TopologicalMap:
+    """The map of a pair: the robot stands at each node, at level none. Node times correspond to a walk at TOP_SPEED.
+    tier: of images."""
     world = world_of(place, "none")
     ground = ground_of(place)
     nodes: list[Node] = []
@@ -46,7 +47,7 @@ def demonstrate(place: str, pair: Pair) -> TopologicalMap:
             qpos = rest.copy()
             qpos[first : first + 3] = x, y, rest[first + 2] + height_at(ground, x, y)
             qpos[first + 3 : first + 7] = gloam.yaw_quaternion(yaw)
-            frame = sim.cameras[CAMERA].render(("rgb",), width=_SIZE[0], height=_SIZE[1], qpos=qpos, tier="interactive")
+            frame = sim.cameras[CAMERA].render(("rgb",), width=_SIZE[0], height=_SIZE[1], qpos=qpos, **image_options(tier))
             nodes.append(Node(np.array(frame.rgb), (x, y, yaw), k * SPACING / TOP_SPEED))
     return TopologicalMap(nodes, MapSource.of(world, CAMERA))
 
@@ -57,12 +58,12 @@ def _free_joint(sim: gloam.Simulation) -> int:
     return next(i for i, kind in enumerate(kinds) if kind == 0 and names[int(bodies[i])].startswith(f"{ROBOT}/"))
 
 
-def map_of(place: str, pair: Pair, folder: Path) -> TopologicalMap:
+def map_of(place: str, pair: Pair, folder: Path, tier: str = "interactive") -> TopologicalMap:
     """The map in `folder`, which is made if it is missing."""
     if not folder.is_dir():
         part = folder.with_name(f".{folder.name}.{uuid.uuid4().hex[:12]}")
         try:
-            demonstrate(place, pair).save(part)
+            demonstrate(place, pair, tier).save(part)
             publish(part, folder)
         finally:
             shutil.rmtree(part, ignore_errors=True)  # another process was faster

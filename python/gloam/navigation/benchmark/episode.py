@@ -24,7 +24,7 @@ from ..planner import Task
 from .demonstration import map_of
 from .key import Key
 from .options import create
-from .places import CAMERA, LIDAR, RADIUS, ROBOT, TOP_SPEED, Pair, ground_of, world_of
+from .places import CAMERA, LIDAR, RADIUS, ROBOT, TOP_SPEED, Pair, ground_of, image_options, world_of
 from .visibility import PROBE, VisibilityMeter
 
 LOG_TOPICS = ("/clock", "/tf*", f"/{PROBE}")
@@ -178,10 +178,10 @@ def _is_of_storage(error: Exception, *folders: Path) -> bool:
 def _drive(spec: EpisodeSpec, pair: Pair, folder: Path, maps: Path, limit: float) -> dict[str, Any]:
     world = world_of(spec.place, spec.level)
     planner = create(spec.planner, spec.options)
-    map_ = map_of(spec.place, pair, maps / spec.place / f"{spec.number:04}") if planner.uses_map else None
+    map_ = map_of(spec.place, pair, maps / spec.place / f"{spec.number:04}", spec.tier) if planner.uses_map else None
     task = Task(ROBOT, spec.pair_seed, pair.goal, map_, world, TOP_SPEED, RADIUS)
     with gloam.Simulation(world, seed=spec.pair_seed) as sim:
-        rig = Rig(ROBOT, CAMERA, LIDAR, {"tier": spec.tier})
+        rig = Rig(ROBOT, CAMERA, LIDAR, image_options(spec.tier))
         driver = Driver(sim, rig, planner)
         ground = ground_of(spec.place)
         watch = Watch(pair.goal, ground)

@@ -75,6 +75,11 @@ def world_of(place: str, level: str) -> gloam.World:
     return scene_of(place, level).compile()
 
 
+def image_options(tier: str) -> dict[str, Any]:
+    """Options of images of a tier. The path tier takes 16 samples, because images in smoke flicker with its default of 4."""
+    return {"tier": tier} | ({"spp": 16} if tier == "path" else {})
+
+
 @lru_cache
 def ground_of(place: str) -> Ground | None:
     """Its uneven ground, which is the same at all levels."""
