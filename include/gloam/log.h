@@ -31,7 +31,7 @@ struct LogRequest {
 };
 
 /// A log that is being written. If it is destroyed before finish(), the file is readable but lacks
-/// its index.
+/// its index. Its simulation must live until then; afterwards the log may outlive it.
 class LogStream {
  public:
   virtual ~LogStream() = default;

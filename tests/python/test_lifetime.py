@@ -204,6 +204,23 @@ def test_mujocos_objects_outlive_the_simulation(tmp_path: Path) -> None:
     assert data.qpos.tobytes() == was and model.body_mass.tobytes() and model.nq == len(data.qpos)
 
 
+def test_a_log_that_could_not_be_written_outlives_its_simulation(pendulum: Path, run_python: Any) -> None:
+    code = f"""
+import resource
+import gloam
+resource.setrlimit(resource.RLIMIT_FSIZE, (20_000, resource.RLIM_INFINITY))  # a full disk
+for k in range(3):
+    try:
+        with gloam.load({str(pendulum)!r}) as sim, sim.record(f"{{k}}.mcap", ["/clock", "/tf*"]):
+            sim.run_until(time=20)
+    except gloam.Error as error:
+        kept = error  # with the frames that hold the log
+    else:
+        raise SystemExit("the log is complete")
+"""
+    run_python(code, MALLOC_PERTURB_="165")  # freed memory has other values
+
+
 @pytest.mark.skipif(os.environ.get("GLOAM_ASAN") != "1", reason="shows that asan.py sees a use after free")
 @pytest.mark.parametrize("use", ["a.tobytes()", "ctypes.memset(at, 0, 8)"])
 def test_the_sanitizer_sees_a_use_after_free(run_python: Any, use: str) -> None:

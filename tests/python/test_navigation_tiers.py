@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import shutil
 from pathlib import Path
 
 import gloam
@@ -53,6 +54,20 @@ def test_without_a_check_or_pairs_there_is_nothing(tmp_path: Path) -> None:
     assert cell.pairs == 0 and cell.sc is None and cell.difference.value is None and cell.sc_p is None
     assert "0 of 0" in tier_lines([cell], "interactive")[1]
     assert tier_rows(tmp_path / FOLDER) == []
+
+
+def test_the_page_compares_the_tiers(tmp_path: Path) -> None:
+    for module in ("matplotlib", "jinja2", "pyarrow"):
+        pytest.importorskip(module)
+    from gloam.navigation.benchmark.report import PAGE, write_report
+
+    write_both(tmp_path)
+    write_report(tmp_path)
+    page = (tmp_path / PAGE).read_text()
+    assert 'id="tier"' in page and "<td>gnm</td><td>house</td><td>none</td>" in page and "2 of 2" in page
+    shutil.rmtree(tmp_path / FOLDER)
+    write_report(tmp_path)
+    assert 'id="tier"' not in (tmp_path / PAGE).read_text()
 
 
 def test_only_planners_with_images_are_checked() -> None:

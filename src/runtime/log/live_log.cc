@@ -30,19 +30,22 @@ class LiveLog final : public LogStream {
  public:
   LiveLog(LiveSimulation& simulation, std::unique_ptr<LogRecorder> recorder)
       : simulation_(simulation), recorder_(std::move(recorder)) {}
-  Status status() const override { return recorder_->status(); }
-  int64_t dropped() const override { return recorder_->dropped(); }
+  Status status() const override { return recorder_ ? recorder_->status() : finished_; }
+  int64_t dropped() const override { return recorder_ ? recorder_->dropped() : dropped_; }
   Status finish() override {
-    if (is_finished_) return {};
-    is_finished_ = true;
+    if (!recorder_) return {};
     const Rest rest(simulation_);
-    return recorder_->finish(simulation_.latest());
+    finished_ = recorder_->finish(simulation_.latest());
+    dropped_ = recorder_->dropped();
+    recorder_.reset();  // a finished log may outlive its simulation
+    return finished_;
   }
 
  private:
   LiveSimulation& simulation_;
-  std::unique_ptr<LogRecorder> recorder_;
-  bool is_finished_ = false;
+  std::unique_ptr<LogRecorder> recorder_;  // until finish()
+  Status finished_;
+  int64_t dropped_ = 0;
 };
 
 }  // namespace

@@ -63,6 +63,19 @@ class Logs : public testing::Test {
   fs::path file_;
 };
 
+TEST_F(Logs, MayOutliveTheirSimulationOnceTheyAreFinished) {
+  auto live = simulation(world());
+  auto log = *start_log(*live, {.file = file_});
+  ASSERT_TRUE(live->step(20).ok());
+  ASSERT_TRUE(log->finish().ok());
+  live.reset();
+  EXPECT_TRUE(log->status().ok());
+  EXPECT_EQ(log->dropped(), 0);
+  EXPECT_TRUE(log->finish().ok()) << "the second call does nothing";
+  log.reset();
+  EXPECT_TRUE(verify().is_equal());
+}
+
 TEST_F(Logs, AreSteppedAgainToTheBit) {
   auto live = simulation(world());
   auto log = *LogRecorder::start(*live, {.file = file_});

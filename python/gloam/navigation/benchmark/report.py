@@ -21,6 +21,7 @@ from .results import POSTER, VIDEO, Episode, Results, load_results
 from .routes import route_charts
 from .statistics import Estimate, wilson
 from .summary import CellSummary, Summary, summarize
+from .tiers import tier_rows
 
 PAGE = "report.html"
 
@@ -76,6 +77,7 @@ def render_page(results: Results, summary: Summary) -> str:
             "collisions": _image(charts.collision_bars(results.request, summary)),
         },
         routes={scene: _image(svg) for scene, svg in route_charts(results).items()},
+        tiers=tier_rows(results.folder),
         errors=_errors(summary),
         few=[cell for cell in summary.cells if 0 < cell.finished < 10],
         total_wall=sum(e.wall_seconds for e in results.episodes),
