@@ -45,6 +45,8 @@ class Trainer:
 
     def __init__(self, data: Data, settings: Settings) -> None:
         torch.manual_seed(settings.seed)
+        torch.backends.cudnn.benchmark = True  # shapes never change
+        torch.set_float32_matmul_precision("high")
         self.data, self.settings = data, settings
         self.policy = Policy().to(data.device, memory_format=torch.channels_last)
         self.average = copy.deepcopy(self.policy).eval()
