@@ -26,7 +26,10 @@ from gloam.navigation.benchmark.options import File, Option, arguments, complete
 from gloam.navigation.benchmark.places import EYE, ROBOT
 from gloam.navigation.benchmark.pool import Died, local_results
 from gloam.navigation.benchmark.request import Request
+from gloam.navigation.benchmark.runner import Workers
 from gloam.navigation.benchmark.visibility import PROBE, VisibilityMeter, visibility_probe
+from gloam.navigation.planner import make_planner
+from gloam.navigation.planners.external import ExternalPlanner
 from gloam.navigation.planners.goal_image import own_weights
 from gloam.navigation.plugins import load_plugin
 
@@ -129,6 +132,14 @@ def test_own_policy_is_a_default_once_it_exists(
     assert command("--no-report", "--out", str(tmp_path / "out")) == 0
     assert asked[1].planners[-1] == "gloam" and asked[1].options == (Option("gloam", "weights", asked[1].options[0].value),)
     assert "left out" not in capsys.readouterr().err
+
+
+def test_a_process_that_serves_one_robot_gets_one_episode_at_a_time() -> None:
+    assert Workers().single("far") == Workers(1) and Workers(1).single("far") == Workers(1)
+    for more in (Workers(2), Workers(1, "auto")):
+        with pytest.raises(gloam.UsageError, match="'far' serves one robot at a time"):
+            more.single("far")
+    assert ExternalPlanner.serves_one and not any(make_planner(name).serves_one for name in ("straight", "lidar"))
 
 
 def test_planners_of_one_type_have_own_names() -> None:

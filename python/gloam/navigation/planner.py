@@ -97,13 +97,15 @@ class Planner(ABC):
 
     rate: calls per second of simulation time; latency: simulation time between an observation and the application of
     its answer [s]; needs: observations other than pose and velocity; uses_map: whether it
-    reads Task.map, which the benchmark then renders; image_size: (width, height) [px].
+    reads Task.map, which the benchmark then renders; serves_one: whether all its instances share a resource that serves
+    one robot at a time, such as a process at an address; image_size: (width, height) [px].
     """
 
     rate: float = 4.0
     latency: float = 0.1
     needs: ClassVar[frozenset[Need]] = frozenset()
     uses_map: ClassVar[bool] = True
+    serves_one: ClassVar[bool] = False
     image_size: tuple[int, int] = (85, 64)
 
     @abstractmethod

@@ -12,7 +12,7 @@ from typing import Any
 
 import gloam
 
-from ..planner import Need, Planner, make_planner
+from ..planner import Planner, make_planner
 from ..planners.goal_image import own_weights
 from ..plugins import absolute_name, load_plugin
 
@@ -141,20 +141,20 @@ def create(planner: str, options: Iterable[tuple[str, Any]]) -> Planner:
     return make_planner(given.pop("type", planner), **given)
 
 
-def check_planners(planners: Sequence[str], options: tuple[Option, ...]) -> dict[str, frozenset[Need]]:
-    """Creates each planner once, so that wrong options and weights stop a benchmark before its first episode. Returns the
-    observations that they need. Errors: gloam.UsageError with the planner's name."""
+def check_planners(planners: Sequence[str], options: tuple[Option, ...]) -> dict[str, Planner]:
+    """Creates each planner once, so that wrong options and weights stop a benchmark before its first episode. Returns them,
+    closed. Errors: gloam.UsageError with the planner's name."""
     for option in options:
         if option.planner not in planners:
             raise gloam.UsageError(f"option {option} is for a planner that the benchmark does not have")
-    return {planner: _needs(planner, options) for planner in planners}
+    return {planner: _checked(planner, options) for planner in planners}
 
 
-def _needs(name: str, options: tuple[Option, ...]) -> frozenset[Need]:
+def _checked(name: str, options: tuple[Option, ...]) -> Planner:
     try:
         planner = create(name, arguments(name, options))
         planner.close()
     except Exception as error:  # by anybody's planner
         cause = error if isinstance(error, gloam.Error) else f"{type(error).__name__}: {error}"
         raise gloam.UsageError(f"planner '{name}' cannot be created: {cause}") from error
-    return planner.needs
+    return planner

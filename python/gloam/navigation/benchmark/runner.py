@@ -44,6 +44,12 @@ class Workers:
     count: int = 0
     cluster: str = ""
 
+    def single(self, planner: str) -> Workers:
+        """One process, for a planner that serves one robot. Errors: gloam.UsageError if more were asked for."""
+        if self.cluster or self.count > 1:
+            raise gloam.UsageError(f"planner '{planner}' serves one robot at a time, so episodes run in one process", hint="--workers 1")
+        return Workers(1)
+
     def results(
         self, do: Callable[[EpisodeSpec], Result], specs: deque[EpisodeSpec]
     ) -> Generator[tuple[EpisodeSpec, Result | Died], None, None]:
@@ -65,7 +71,10 @@ def run(
     cannot be written, or its process has ended several times.
     """
     request.check()
-    check_planners(request.planners, request.options)  # before the folder knows the request
+    workers = workers or Workers()
+    planners = check_planners(request.planners, request.options)  # before the folder knows the request
+    if single := [name for name, planner in planners.items() if planner.serves_one]:
+        workers = workers.single(single[0])
     try:
         out.mkdir(parents=True, exist_ok=True)
     except OSError as error:
@@ -77,7 +86,7 @@ def run(
             _remove_parts(out)
             job = Job(str(out.resolve()), tuple(file.name for file in request.plugins))
             try:
-                _run_all(missing, job, workers or Workers(), tell or (lambda _: None))
+                _run_all(missing, job, workers, tell or (lambda _: None))
             finally:
                 _remove_parts(out)
     return [json.loads(_file(out, spec).read_text(encoding="utf-8")) for spec in request.specs()]

@@ -51,8 +51,8 @@ def tier_request(request: Request, episodes: int) -> Request:
         raise gloam.UsageError("the benchmark uses the path tier already, so there is nothing to compare")
     if not 1 <= episodes <= request.episodes:
         raise gloam.UsageError(f"the tier can be checked with 1 to {request.episodes} episodes, got {episodes}")
-    needs = check_planners(request.planners, request.options)
-    planners = tuple(name for name in request.planners if needs[name] & {"image", "depth"})
+    made = check_planners(request.planners, request.options)
+    planners = tuple(name for name in request.planners if made[name].needs & {"image", "depth"})
     if not planners:
         raise gloam.UsageError(f"the tier does not matter to {', '.join(request.planners)}: none needs images")
     options = tuple(option for option in request.options if option.planner in planners)

@@ -104,6 +104,7 @@ class ExternalPlanner(Planner):
     """
 
     uses_map: ClassVar[bool] = False
+    serves_one: ClassVar[bool] = True
 
     def __init__(self, address: str, command: str = "", timeout: float = 10.0) -> None:
         if not address.startswith(("tcp://", "ipc://")):
