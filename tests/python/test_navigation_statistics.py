@@ -212,7 +212,7 @@ def test_a_missing_key_is_named(tmp_path: Path, key: str) -> None:
 
 
 def test_wrong_files_and_requests(tmp_path: Path) -> None:
-    with pytest.raises(gloam.IoError, match="no such folder"):
+    with pytest.raises(gloam.IoError, match="the folder does not exist"):
         load_results(tmp_path / "absent")
     with pytest.raises(gloam.IoError, match="request.json"):
         load_results(tmp_path)

@@ -35,7 +35,7 @@ class Rig:
     def of(cls, world: gloam.World, robot: str = "", camera: str = "", lidar: str = "") -> Rig:
         """The named parts. "": the first robot, its first camera, the first LiDAR of the scene, or "" if there is none.
 
-        Errors: NotFoundError for an unknown name, or if there is no robot.
+        Errors: NotFoundError for an unknown name, or if the World has no robot.
         """
         robot = robot or next(iter(world.robots), "")
         camera = camera or next((name for name in world.cameras if name.startswith(f"{robot}/")), "")

@@ -137,7 +137,7 @@ class Grid:
             usable = usable & (field >= reach[0]) & (field <= reach[1])
         points = self.middles(usable)
         if len(points) == 0:
-            raise gloam.UsageError(f"there is no free place {reach[0]} to {reach[1]} m from the goal")
+            raise gloam.UsageError(f"no free place lies {reach[0]} to {reach[1]} m from the goal")
         point: Array = points[rng.integers(len(points))]
         return point
 

@@ -60,7 +60,7 @@ class Ground:
         return np.stack([self.low, self.high])
 
     def height(self, points: Array) -> Array:
-        """z of the ground at points (…, 2), bilinear between samples; beyond the edge that of the edge [m]."""
+        """z of the ground at points (…, 2), bilinear between samples; points beyond the edge have the height of the edge [m]."""
         last = np.array(self.heights.shape[::-1]) - 1
         place = np.clip((np.asarray(points) - self.low) / (self.high - self.low) * last, 0, last)
         cell = np.minimum(place.astype(int), last - 1)

@@ -76,7 +76,7 @@ def drive(sim: gloam.Simulation, until: float, allow_programs: bool = False) -> 
 
 
 def _deed(table: dict[str, Any]) -> str:
-    """What a planner does to the user's machine beyond reading files and talking to processes that run on it; "" = nothing."""
+    """The action of a planner that needs permission: it loads code, starts a program or connects to another machine; "" = none."""
     if table.get("library"):
         return f"loads the library {table['library']}"
     if table.get("command"):

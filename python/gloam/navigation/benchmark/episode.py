@@ -168,8 +168,8 @@ def run_episode(spec: EpisodeSpec, pair: Pair, folder: Path, maps: Path) -> dict
 
 
 def _is_of_storage(error: Exception, *folders: Path) -> bool:
-    """Whether results cannot be written, which is no failure of the planner: the disk is full, or the error names a file in
-    one of the folders."""
+    """Whether an error means that results cannot be written, and not that the planner failed: the disk is full, or the error
+    names a file in one of the folders."""
     file = Path(str(getattr(error, "file", "") or getattr(error, "filename", "") or ""))
     is_full = isinstance(error, OSError) and error.errno in (errno.ENOSPC, errno.EDQUOT)
     return is_full or any(file.is_relative_to(folder) for folder in folders)

@@ -20,7 +20,8 @@ _CPUS = 1  # of a task
 
 def cluster_results(do: Callable[[T], R], tasks: deque[T], address: str) -> Generator[tuple[T, R | Died], None, None]:
     """As local_results(), from the workers of a cluster. address: "auto", "ray://HOST:PORT"; an existing connection of this
-    process is used first. Errors: gloam.UnsupportedError without the package ray; gloam.UsageError if there is no cluster."""
+    process is used first. Errors: gloam.UnsupportedError without the package ray; gloam.UsageError if the cluster cannot be
+    reached."""
     with ExitStack() as stack:
         ray = _connected(stack, address)
         # A task that dies is reported, not repeated here: the caller counts.
@@ -38,7 +39,7 @@ def _connected(stack: ExitStack, address: str) -> Any:
     except ImportError as error:
         raise gloam.UnsupportedError(str(error)) from None
     except (ConnectionError, ValueError, RuntimeError) as error:
-        raise gloam.UsageError(f"there is no Ray cluster at '{address}': {str(error).splitlines()[0]}") from None
+        raise gloam.UsageError(f"cannot connect to a Ray cluster at '{address}': {str(error).splitlines()[0]}") from None
 
 
 def _work(do: Callable[[Any], Any], task: Any) -> Any:

@@ -98,7 +98,7 @@ class Request:
     def read(cls, file: Path) -> Request:
         """The request in a file, whose names need not exist here. Errors: IoError; InputError with file and cause."""
         if not file.parent.is_dir():
-            raise gloam.IoError("there is no such folder", str(file.parent))
+            raise gloam.IoError("the folder does not exist", str(file.parent))
         values = Fields(read_object(file), file)
         return cls(
             values.names("planners"),

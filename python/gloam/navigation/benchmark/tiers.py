@@ -46,7 +46,8 @@ class TierRow:
 
 def tier_request(request: Request, episodes: int) -> Request:
     """The same benchmark with the path tier: `episodes` of each cell, and only the planners that see images: episodes of
-    the others are equal in all tiers. Errors: gloam.UsageError if there is no such planner, or nothing to compare."""
+    the others are equal in all tiers. Errors: gloam.UsageError if no planner sees images, or nothing can be
+    compared."""
     if request.tier == TIER:
         raise gloam.UsageError("the benchmark uses the path tier already, so there is nothing to compare")
     if not 1 <= episodes <= request.episodes:

@@ -52,7 +52,7 @@ class OnnxNetwork:
         """inputs, outputs: the ports that the file must have, no more and no fewer; backend: "auto" = OpenVINO if it is
         installed, else ONNX Runtime.
 
-        Errors: gloam.IoError if there is no such file; gloam.InputError if it is not a network or its ports differ;
+        Errors: gloam.IoError if the file does not exist; gloam.InputError if it is not a network or its ports differ;
         gloam.UnsupportedError if neither package is installed.
         """
         self.path = Path(path)

@@ -140,7 +140,7 @@ class ExternalPlanner(Planner):
             raise gloam.IoError(str(error), self._address) from None
 
     def plan(self, observation: Observation) -> Answer:
-        """Errors: TimeoutError; ConnectionError; ValueError for a reply that is no answer."""
+        """Errors: TimeoutError; ConnectionError; ValueError for an invalid answer."""
         if self._silences >= _MOST_SILENCES:
             raise TimeoutError(f"the planner at {self._address} is not called any more: {_MOST_SILENCES} calls had no answer")
         try:

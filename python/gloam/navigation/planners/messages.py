@@ -88,7 +88,7 @@ def description_of(reply: dict[str, Any]) -> Description:
 
 
 def answer_of(reply: dict[str, Any]) -> Answer:
-    """Errors: ValueError for a reply that is no answer to an observation."""
+    """The answer to an observation in a reply. Errors: ValueError if it is invalid."""
     given = [key for key in ("velocity", "waypoints", "arrived") if key in reply]
     if len(given) != 1:
         raise ValueError(f"an answer has one of 'velocity', 'waypoints' and 'arrived', got {', '.join(given) or 'none'}")
