@@ -12,10 +12,11 @@ import numpy as np
 import pytest
 from gloam.navigation.benchmark import load_results, write_report
 from gloam.navigation.benchmark.files import locked
-from gloam.navigation.benchmark.floor_plan import FloorPlan, plan_of
+from gloam.navigation.benchmark.floor_plan import plan_of
 from gloam.navigation.benchmark.movie import write_movie
 from gloam.navigation.benchmark.route_view import RouteView
 from gloam.navigation.benchmark.videos import render_videos
+from gloam.navigation.grid import Grid
 from navigation_folder import episode, write_episode, write_request
 from navigation_scene import arena
 from PIL import Image
@@ -113,7 +114,7 @@ def test_the_map_shows_route_goal_and_obstacles(tmp_path: Path) -> None:
     write_episode(tmp_path, episode(*NAME, 0, start=[0.0, 0.0, 0.0], goal=[5.6, 0.0], track=track, touches=[[2.5, 2.0, 1.0, "box"]]))
     blocked = np.zeros((41, 101), bool)
     blocked[28:31, 48:53] = True  # x 2.3 … 2.7 m and y 0.8 … 1.0 m
-    plan = FloorPlan((-2.5, -2.0), 0.1, blocked)
+    plan = Grid((-2.5, -2.0), 0.1, blocked)
     # 5.6 m and margins of 1.2 m in 320 px: 40 px/m around (2.8, 0).
     view = RouteView(load_results(tmp_path).episodes[0], plan, (320, 240))
 

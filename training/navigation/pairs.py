@@ -41,7 +41,8 @@ class Pairs:
 
 def pairs_of(poses: Array, space: Grid, rng: np.random.Generator, rule: PairRule) -> Pairs:
     """Pairs of the views of one place, which have poses (n, 3) x, y, yaw [m, rad]. Straight ways lie in the free space."""
-    anchors, goals = [], []
+    first: list[int] = []
+    second: list[int] = []
     for anchor in range(len(poses)):
         offset = poses[:, :2] - poses[anchor, :2]
         gap = np.hypot(offset[:, 0], offset[:, 1])
@@ -49,15 +50,16 @@ def pairs_of(poses: Array, space: Grid, rng: np.random.Generator, rule: PairRule
         seen &= np.abs(wrap(poses[:, 2] - poses[anchor, 2])) <= rule.turned
         candidates = rng.permutation(np.flatnonzero(seen))
         found = [goal for goal in candidates[: 2 * rule.per_view] if _is_free(space, poses[anchor, :2], offset[goal])]
-        goals += found[: rule.per_view]
-        anchors += [anchor] * len(found[: rule.per_view])
+        second += found[: rule.per_view]
+        first += [anchor] * len(found[: rule.per_view])
+    anchors, goals = np.array(first, np.int32), np.array(second, np.int32)
     action = [waypoints(Path(poses[[a, g], :2]), poses[a], 0.0) for a, g in zip(anchors, goals, strict=True)]
-    offset = (poses[goals] - poses[anchors]) if anchors else np.zeros((0, 3))
-    bearing = np.abs(wrap(np.arctan2(offset[:, 1], offset[:, 0]) - poses[anchors, 2])) if anchors else np.zeros(0)
+    offset = poses[goals] - poses[anchors]
+    bearing = np.abs(wrap(np.arctan2(offset[:, 1], offset[:, 0]) - poses[anchors, 2]))
     steps = np.hypot(offset[:, 0], offset[:, 1]) / SPACING + np.maximum(bearing - np.pi / 4, 0.0) / MAX_TURN
     return Pairs(
-        np.array(anchors, np.int32),
-        np.array(goals, np.int32),
+        anchors,
+        goals,
         steps.astype(np.float32),
         np.array(action, np.float32).reshape(-1, 5, 4),
         bearing <= rule.aside,
@@ -65,5 +67,5 @@ def pairs_of(poses: Array, space: Grid, rng: np.random.Generator, rule: PairRule
 
 
 def _is_free(space: Grid, start: Array, offset: Array) -> bool:
-    count = int(np.ceil(np.hypot(*offset) / space.cell)) + 1
-    return bool(space.are_free(start + np.linspace(0.0, 1.0, count)[:, None] * offset).all())
+    shares = np.linspace(0.0, 1.0, int(np.ceil(np.hypot(*offset) / space.cell)) + 1)
+    return bool(space.are_free(start + shares[:, None] * offset).all())

@@ -26,6 +26,12 @@ class Grid:
         self.cell = cell
         self.blocked = blocked
 
+    @property
+    def extent(self) -> tuple[float, float, float, float]:
+        """Left, right, bottom and top of the outer cells [m], as matplotlib's imshow() takes them."""
+        (x, y), (rows, columns) = (self.origin - 0.5 * self.cell).tolist(), self.blocked.shape
+        return x, x + columns * self.cell, y, y + rows * self.cell
+
     def index(self, point: ArrayLike) -> _Cell:
         """Row and column of the cell that holds (x, y) [m], moved into the grid."""
         column, row = np.rint(self._offsets(point)).astype(int)

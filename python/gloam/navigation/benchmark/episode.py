@@ -29,7 +29,7 @@ from .visibility import PROBE, VisibilityMeter
 
 LOG_TOPICS = ("/clock", "/tf*", f"/{PROBE}")
 _STAND = 0.3  # the quadruped's height above the ground at the start [m]
-_BEGIN = 1.0  # of the planner's time: until then the robot comes to rest on its feet [s]
+BEGIN = 1.0  # of the planner's time: until then the robot comes to rest on its feet [s]
 _STUCK_TIME, _STUCK_REACH = 15.0, 0.25  # an episode ends when the robot has stayed within so many metres [s], [m]
 _LOW = 0.05  # contacts below are steps on rugs and sills [m]
 _TRACK = 10  # instants of a watch between two places of the track
@@ -196,14 +196,14 @@ def _drive(spec: EpisodeSpec, pair: Pair, folder: Path, maps: Path, limit: float
                 meter.sample()
                 return watch(sim)
 
-            driver.run(task, _BEGIN + limit, ends)
+            driver.run(task, BEGIN + limit, ends)
         return _measured(sim, driver, watch) | {"visibility_mean": meter.mean(), "visibility_min": meter.least()}
 
 
 def _stand(sim: gloam.Simulation, pair: Pair, ground: Ground | None) -> None:
     x, y, yaw = pair.start
     sim.robots[ROBOT].place((x, y, height_at(ground, x, y) + _STAND), yaw=yaw)
-    sim.run_until(time=_BEGIN)
+    sim.run_until(time=BEGIN)
 
 
 def _measured(sim: gloam.Simulation, driver: Driver, watch: Watch) -> dict[str, Any]:
@@ -214,7 +214,7 @@ def _measured(sim: gloam.Simulation, driver: Driver, watch: Watch) -> dict[str, 
         outcome = "lost"
     stats = driver.stats
     return {
-        "outcome": outcome, "success": outcome == "success", "time": end - _BEGIN, "path_length": watch.length,
+        "outcome": outcome, "success": outcome == "success", "time": end - BEGIN, "path_length": watch.length,
         "final_distance": left, "collisions": watch.touched.total(), "collisions_by_object": watch.touched.by_object,
         "plans": stats.plans, "late": stats.late, "invalid": stats.invalid, "message": stats.error,
         "hash": f"{sim.hash:#018x}", "track": watch.track(), "touches": watch.touched.places,

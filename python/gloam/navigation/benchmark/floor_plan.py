@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gloam.errors import InputError
 
@@ -19,24 +17,9 @@ _CELL = 0.05  # [m]
 _ROBOT_RADIUS = 0.05  # small: the plan shows obstacles as wide as they are, not enlarged by the robot [m]
 
 
-@dataclass(frozen=True)
-class FloorPlan:
-    """blocked: whether a cell has an obstacle or lies outside, [row along y, column along x]; origin: (x, y) of the middle
-    of cell [0, 0] [m]; cell: side of a cell [m]."""
-
-    origin: tuple[float, float]
-    cell: float
-    blocked: NDArray[np.bool_]
-
-    @property
-    def extent(self) -> tuple[float, float, float, float]:
-        """Left, right, bottom, top [m]."""
-        (x, y), (rows, columns), half = self.origin, self.blocked.shape, 0.5 * self.cell
-        return x - half, x - half + columns * self.cell, y - half, y - half + rows * self.cell
-
-
-def plan_of(folder: Path, scene: str, level: str) -> FloorPlan | None:
-    """The plan of a scene at a level, kept in FOLDER/plans; None for scenes that the benchmark does not have.
+def plan_of(folder: Path, scene: str, level: str) -> Grid | None:
+    """The plan of a scene at a level, kept in FOLDER/plans: its blocked cells have an obstacle or lie outside. None for scenes
+    that the benchmark does not have.
 
     Errors: as World; gloam.IoError; gloam.InputError if the kept file is not a plan.
     """
@@ -51,11 +34,11 @@ def plan_of(folder: Path, scene: str, level: str) -> FloorPlan | None:
     try:
         with np.load(file, allow_pickle=False) as kept:
             x, y = kept["origin"].tolist()
-            return FloorPlan((x, y), float(kept["cell"]), kept["blocked"].astype(bool))
+            return Grid((x, y), float(kept["cell"]), kept["blocked"].astype(bool))
     except (ValueError, KeyError, EOFError, OSError) as error:
         raise InputError(f"this is not a floor plan: {error}", str(file), hint="delete it") from error
 
 
 def _save(path: Path, space: Grid) -> None:
     with path.open("wb") as file:
-        np.savez_compressed(file, origin=np.asarray(space.origin), cell=space.cell, blocked=space.blocked)
+        np.savez_compressed(file, origin=space.origin, cell=space.cell, blocked=space.blocked)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import os
 import platform
 import re
@@ -13,6 +12,7 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 import gloam
+from gloam._distribute.manifest import write_json
 
 from ..planner import planner_names
 from .checks import Fields, read_object
@@ -90,9 +90,7 @@ class Request:
             version=gloam.__version__,
             started=kept.started or time.strftime("%Y-%m-%d"),
         )
-        part = file.with_suffix(".part")
-        part.write_text(json.dumps(asdict(written), indent=1) + "\n", encoding="utf-8")
-        part.rename(file)
+        write_json(file, asdict(written))
 
     @classmethod
     def read(cls, file: Path) -> Request:

@@ -7,20 +7,20 @@ from typing import Any
 
 import numpy as np
 
-from .floor_plan import FloorPlan
+from ..grid import Grid
+from .episode import BEGIN
 from .optional import require
 from .places import RADIUS
 from .results import Episode
 
 _FREE, _BLOCKED, _ROUTE, _GOAL, _TOUCH, _INK = (255, 255, 255), (190, 196, 204), (0, 114, 178), (0, 158, 115), (213, 94, 0), (34, 34, 34)
 _MARGIN = 1.2  # around start, goal and route [m]
-_START = 1.0  # simulation time at which an episode begins [s]
 
 
 class RouteView:
     """Draws the map and the title of one episode (PIL images)."""
 
-    def __init__(self, episode: Episode, plan: FloorPlan | None, size: tuple[int, int]) -> None:
+    def __init__(self, episode: Episode, plan: Grid | None, size: tuple[int, int]) -> None:
         """size: of the map [px]."""
         self._episode, self._size = episode, size
         points = np.array([episode.start[:2], episode.goal, *(row[1:] for row in episode.track)])
@@ -46,7 +46,7 @@ class RouteView:
         """A line with the episode's name, and time and number of collisions so far."""
         image = require("PIL.Image").new("RGB", size, _FREE)
         draw = require("PIL.ImageDraw").Draw(image)
-        key, now = self._episode.key, max(0.0, time - _START)
+        key, now = self._episode.key, max(0.0, time - BEGIN)
         left = f"{key.planner} · {key.scene} · {key.level} · episode {key.episode}: {self._episode.outcome.replace('_', ' ')}"
         right = f"{now:4.1f} s, {touches} {'collision' if touches == 1 else 'collisions'}"
         font = _font()
@@ -54,17 +54,14 @@ class RouteView:
         draw.text((size[0] - 6, size[1] / 2), right, fill=_INK, font=font, anchor="rm")
         return image
 
-    def _drawn(self, plan: FloorPlan | None) -> Any:
+    def _drawn(self, plan: Grid | None) -> Any:
         width, height = self._size
         pixels = np.full((height, width, 3), _FREE, np.uint8)
         if plan is not None:
             x = self._middle[0] + (np.arange(width) + 0.5 - width / 2) / self._scale
             y = self._middle[1] - (np.arange(height) + 0.5 - height / 2) / self._scale
-            columns = np.rint((x - plan.origin[0]) / plan.cell).astype(int)
-            rows = np.rint((y - plan.origin[1]) / plan.cell).astype(int)
-            inside = ((rows >= 0) & (rows < plan.blocked.shape[0]))[:, None] & ((columns >= 0) & (columns < plan.blocked.shape[1]))
-            cells = plan.blocked[np.clip(rows, 0, plan.blocked.shape[0] - 1)][:, np.clip(columns, 0, plan.blocked.shape[1] - 1)]
-            pixels[cells | ~inside] = _BLOCKED
+            free = plan.are_free(np.stack(np.meshgrid(x, y), axis=-1).reshape(-1, 2))
+            pixels[~free.reshape(height, width)] = _BLOCKED
         image = require("PIL.Image").fromarray(pixels)
         draw = require("PIL.ImageDraw").Draw(image)
         self._dot(draw, self._pixel(*self._episode.start[:2]), 4, _INK)

@@ -5,8 +5,9 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
+from ..grid import Grid
 from .charts import INK, OUTCOME_COLORS, Chart, short
-from .floor_plan import FloorPlan, plan_of
+from .floor_plan import plan_of
 from .optional import require
 from .results import OUTCOMES, Episode, Results
 
@@ -51,14 +52,14 @@ def _chart(results: Results, scene: str) -> str:
     return chart.svg
 
 
-def _aspect(plan: FloorPlan | None) -> float:
+def _aspect(plan: Grid | None) -> float:
     if plan is None:
         return 1.0
     left, right, bottom, top = plan.extent
     return (top - bottom) / (right - left)
 
 
-def _panel(axis: Any, plan: FloorPlan | None, episodes: list[Episode]) -> None:
+def _panel(axis: Any, plan: Grid | None, episodes: list[Episode]) -> None:
     if plan is not None:
         colors = require("matplotlib.colors").ListedColormap(["white", _WALL])
         axis.imshow(plan.blocked, origin="lower", extent=plan.extent, cmap=colors, vmin=0, vmax=1, interpolation="nearest")

@@ -16,8 +16,9 @@ from typing import Any
 
 import gloam
 
+from ..grid import Grid
 from .files import locked
-from .floor_plan import FloorPlan, plan_of
+from .floor_plan import plan_of
 from .movie import write_movie
 from .optional import require
 from .places import CAMERA
@@ -101,7 +102,7 @@ def _replayed(log: Path, out: Path) -> list[Path]:
     return images
 
 
-def _composed(images: list[Path], episode: Episode, plan: FloorPlan | None, last: list[Any]) -> Iterator[Any]:
+def _composed(images: list[Path], episode: Episode, plan: Grid | None, last: list[Any]) -> Iterator[Any]:
     """Images of the video; `last` keeps the last one."""
     pillow = require("PIL.Image")
     route = RouteView(episode, plan, _VIEW)
