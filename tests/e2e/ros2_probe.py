@@ -5,9 +5,11 @@
     ros2_probe.py clock SECONDS             a node with use_sim_time: its clock beside /clock
     ros2_probe.py graph SECONDS             nodes, topics with types and hashes
     ros2_probe.py stuck SECONDS             subscribes to raw pictures and never reads them
+    ros2_probe.py outlast SECONDS COMMAND   stamps of /clock from its first message until SECONDS after COMMAND, which runs a second later
 """
 import importlib
 import json
+import subprocess
 import sys
 import time
 
@@ -115,12 +117,24 @@ def stuck(node, seconds):
     return {}
 
 
+def outlast(node, seconds, *command):
+    stamps = []
+    node.create_subscription(Clock, "/clock", lambda m: stamps.append(stamp_of(m)), QoSProfile(depth=100, reliability=ReliabilityPolicy.RELIABLE))
+    spin(node, 60, lambda: stamps)
+    spin(node, 1)
+    subprocess.run(command, check=True)
+    before = len(stamps)
+    spin(node, float(seconds))
+    return {"before": stamps[:before], "after": stamps[before:]}
+
+
 def main():
     rclpy.init()
     node = rclpy.create_node("probe")
     work, *arguments = sys.argv[1:]
     result = {"listen": lambda s, *only: listen(node, float(s), only), "drive": lambda r, s, v: drive(node, r, s, v), "clock": lambda s: clock(node, s),
-              "graph": lambda s: graph(node, s), "stuck": lambda s: stuck(node, s)}[work](*arguments)
+              "graph": lambda s: graph(node, s), "stuck": lambda s: stuck(node, s),
+              "outlast": lambda s, *command: outlast(node, s, *command)}[work](*arguments)
     print(json.dumps(result))
 
 
