@@ -13,6 +13,7 @@ import gloam
 import numpy as np
 import pytest
 from gloam.navigation import Arrived, Observation, Planner, Task, Velocity, register_planner
+from gloam.navigation.benchmark.demonstration import SPACING, TURN, poses_along
 from gloam.navigation.benchmark.episode import EpisodeSpec, Touched, Watch, run_episode
 from gloam.navigation.benchmark.options import File, Option
 from gloam.navigation.benchmark.places import LEVELS, ROBOT, Course, Pair, scene_of
@@ -97,6 +98,17 @@ def test_a_planner_that_stops_elsewhere_is_lost_and_one_without_answers_is_stuck
         result = run_episode(EpisodeSpec(name, "house", "none", 0, log=False), course.pair(1), tmp_path / name, tmp_path / "maps")
         assert result["outcome"] == outcome and result["invalid"] == share * result["plans"] > -1, name
         assert result["time"] == pytest.approx(15.0, abs=0.2) and result["path_length"] < 0.2
+
+
+def test_maps_have_more_nodes_in_turns() -> None:
+    corner = Pair((0, 0, 0), (4, 4), ((0, 0), (4, 0), (4, 4)), 8.0)
+    poses = np.array(poses_along(corner))
+    assert np.allclose(poses[0], (0, 0, 0)) and np.allclose(poses[-1], (4, 4, math.pi / 2), atol=1e-6)
+    steps, turns = np.hypot(*np.diff(poses[:, :2], axis=0).T), np.diff(poses[:, 2])
+    assert steps.max() < SPACING + 1e-6 and turns.max() < TURN + 0.02
+    assert np.median(steps) == pytest.approx(SPACING, rel=0.1) and steps.min() < 0.25 * SPACING
+    straight = Pair((0, 0, 0), (4, 0), ((0, 0), (4, 0)), 4.0)
+    assert np.allclose(np.diff(np.array(poses_along(straight)), axis=0), (SPACING, 0, 0), atol=1e-6)
 
 
 def test_a_start_at_the_goal_succeeds_at_once(course: Course, tmp_path: Path) -> None:

@@ -168,7 +168,7 @@ def test_the_camera_is_where_the_robot_has_it() -> None:
 def test_scenes_compile_with_all_cameras(tmp_path: Path) -> None:
     place = scenes.places(1, 0)[0]
     views = make_views(count=10)
-    routes.write_place(place, views, tmp_path, 1)
+    routes.write_place(place, views, tmp_path)
     clear, adverse = (tmp_path / f"house_1000_{name}.toml" for name in scenes.CONDITIONS)
     world = gloam.Scene(clear).compile()
     assert [name for name in world.cameras if name.startswith("v")] == [scenes.view_name(k) for k in range(len(views))]
@@ -186,9 +186,8 @@ def test_rendering_reports_failures_and_resumes(tmp_path: Path) -> None:
     (tmp_path / "scenes").mkdir()
     for name in ("house_1_clear", "house_2_clear"):
         (tmp_path / "scenes" / f"{name}.toml").write_text("[[camera]]\n[[camera]]\n")
-    broken = "\n".join(
-        ["if 'house_2' in str(out): sys.exit('no light')", "[(out / f'v{k:05d}.png').touch() for k in range(2)]"]
-    )
+    written = "[(out / f'v{k:05d}{kind}.png').touch() for k in range(2) for kind in ('', '_depth')]"
+    broken = "\n".join(["if 'house_2' in str(out): sys.exit('no light')", written])
     renderer = render_all.Renderer(program(tmp_path, broken), "cpu", 1e18)
     first = render_all.render_all(tmp_path, renderer, 2)
     assert [report["state"] for report in first] == ["done", "failed"] and "no light" in first[1]["message"]
@@ -198,6 +197,23 @@ def test_rendering_reports_failures_and_resumes(tmp_path: Path) -> None:
     assert [report["state"] for report in late] == ["kept", "late"]
     missing = render_all.render_all(tmp_path, render_all.Renderer("/no/program", "cpu", 1e18), 1)
     assert missing[1]["state"] == "failed" and "/no/program" in missing[1]["message"]
+
+
+def test_packed_images_keep_their_rows_and_millimetres(tmp_path: Path) -> None:
+    image = pytest.importorskip("PIL.Image")
+    np.savez(tmp_path / "routes.npz", names=np.array(["house_1", "house_2"]), place=np.array([0, 1, 1]))
+    for name, count in (("house_1", 0), ("house_2", 2)):  # the first one failed
+        folder = tmp_path / "images" / f"{name}_clear"
+        folder.mkdir(parents=True)
+        for k in range(count):
+            image.fromarray(np.full((64, 85, 3), 10 + k, np.uint8)).save(folder / f"v{k:05d}.png")
+            image.fromarray(np.full((64, 85), 1000 * k + 500, np.uint16)).save(folder / f"v{k:05d}_depth.png")
+    assert render_all.pack(tmp_path, "clear") == 2 and render_all.pack(tmp_path, "adversity") == 0
+    with np.load(tmp_path / "images_clear.npz") as packed:
+        assert packed["rows"].tolist() == [1, 2] and packed["images"][:, 0, 0, 0].tolist() == [10, 11]
+        assert packed["depths"][:, -1, -1].tolist() == [500, 1500] and packed["depths"].dtype == np.uint16
+    with np.load(tmp_path / "images_adversity.npz") as packed:
+        assert packed["images"].shape == (0, 64, 85, 3) and packed["depths"].shape == (0, 64, 85)
 
 
 def metrics(conditions: list[str]) -> dict[str, Any]:

@@ -12,7 +12,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 
 torch = pytest.importorskip("torch")
 
-from training.navigation import augment, dataset, export, measures, model, train  # noqa: E402
+from training.navigation import augment, dataset, export, matches, measures, model, train  # noqa: E402
 
 
 @pytest.fixture
@@ -29,12 +29,15 @@ def folder(tmp_path: Path) -> Path:
     table |= {"pair_anchor": anchor, "pair_goal": anchor + 1, "pair_dist": np.full(len(anchor), 3.0, np.float32)}
     table["pair_action"] = np.full((len(anchor), 5, 4), 7.0, np.float32)
     table["pair_ahead"] = np.ones(len(anchor), bool)
+    upright = np.tile([0.5, 0.5, -0.5, -0.5], (count, 1))  # the camera looks along x
+    table["camera"] = np.column_stack([pose[:, :2], np.full(count, 0.3), upright]).astype(np.float32)
     names = np.array([f"house_{number}" for number in range(3)])
     np.savez(tmp_path / "routes.npz", **table, names=names, view_spacing=np.float32(0.2))
     images = np.broadcast_to(np.arange(count, dtype=np.uint8)[:, None, None, None], (count, 64, 85, 3))
-    np.savez(tmp_path / "images_clear.npz", images=images, rows=np.arange(count))
+    depths = np.full((count, 64, 85), 3000, np.uint16)
+    np.savez(tmp_path / "images_clear.npz", images=images, depths=depths, rows=np.arange(count))
     some = np.flatnonzero(place != 1)  # a scene that failed
-    np.savez(tmp_path / "images_adversity.npz", images=images[some], rows=some)
+    np.savez(tmp_path / "images_adversity.npz", images=images[some], depths=depths[some], rows=some)
     return tmp_path
 
 
@@ -136,6 +139,13 @@ def test_the_loss_ignores_waypoints_of_goals_elsewhere(folder: Path) -> None:
     off = batch.action + torch.tensor([1.0, 0, 0, 0])
     found = float(measures.loss(batch.dist[:, None], off, batch, measures.Weights()))
     assert found == pytest.approx(0.5 * 0.5 / 2.5**2), "half of alpha, half of the coordinates"
+
+
+def test_goals_elsewhere_match_nothing(folder: Path) -> None:
+    batch = sample(folder, ["clear"], dataset.Sampling(negative=1.0))
+    here, there = batch.sights
+    other_place = here.position[:, 2].round() != there.position[:, 2].round()
+    assert other_place.any() and not bool(matches.matches(here, there).is_seen[other_place].any())
 
 
 def test_training_steps_reduce_the_loss_and_follow_the_seed(folder: Path) -> None:

@@ -10,6 +10,7 @@ from torch import Tensor
 from torch.nn import functional
 
 from .dataset import Batch
+from .matches import mirrored_sight
 
 
 @dataclass(frozen=True)
@@ -35,7 +36,9 @@ def mirrored(batch: Batch, mirror: Tensor) -> Batch:
     is_mirrored = mirror[:, None, None, None]
     observation = torch.where(is_mirrored, batch.observation.flip(2), batch.observation)
     goal = torch.where(is_mirrored, batch.goal.flip(2), batch.goal)
-    return replace(batch, observation=observation, goal=goal, action=action)
+    here, there = batch.sights
+    sights = mirrored_sight(here, mirror), mirrored_sight(there, mirror)
+    return replace(batch, observation=observation, goal=goal, action=action, sights=sights)
 
 
 def changed(images: Tensor, generator: torch.Generator, ranges: Augmentation) -> Tensor:

@@ -11,6 +11,7 @@ import torch
 from torch import Tensor
 
 from .labels import MAX_STEPS, SPACING
+from .matches import Sight
 
 TURN = 0.15  # in five steps, from which a view counts as turning [rad]
 MEAN, STD = (0.485, 0.456, 0.406), (0.229, 0.224, 0.225)  # of ImageNet
@@ -34,7 +35,8 @@ class Sampling:
 @dataclass(frozen=True)
 class Batch:
     """observation, goal: (n, 64, 85, 3) uint8; dist: (n,) steps; action: (n, 5, 4); positive: (n,) bool, false for
-    goals elsewhere or behind, whose action has no meaning; condition: (n,) of the observation; goal_condition: (n,)."""
+    goals elsewhere or behind, whose action has no meaning; condition: (n,) of the observation; goal_condition: (n,);
+    sights: geometry of both images."""
 
     observation: Tensor
     goal: Tensor
@@ -43,6 +45,7 @@ class Batch:
     positive: Tensor
     condition: Tensor
     goal_condition: Tensor
+    sights: tuple[Sight, Sight]
 
 
 @dataclass(frozen=True)
@@ -67,18 +70,21 @@ class Data:
         with np.load(folder / "routes.npz") as file:
             table = {name: file[name] for name in file.files}
         self.spacing = float(table["view_spacing"])
-        rows, offset, images = len(table["place"]), 0, []
+        rows, offset = len(table["place"]), 0
+        images: list[Tensor] = []
+        depths: list[Tensor] = []
         place_of = np.full((len(conditions), rows), -1, np.int64)  # image of a view in each condition, -1: none
         for number, condition in enumerate(conditions):
             with np.load(folder / f"images_{condition}.npz") as file:
                 keep = np.isin(table["place"][file["rows"]], list(places))
                 images.append(torch.from_numpy(file["images"][keep]))
+                depths.append(torch.from_numpy(file["depths"][keep]).half() / 1000)
                 mine = file["rows"][keep]
             place_of[number, mine] = offset + np.arange(len(mine))
             offset += len(mine)
         if offset == 0:
             raise ValueError(f"{folder} has no images of {', '.join(conditions)} of the places {list(places)}")
-        self.images = torch.cat(images).to(device)
+        self.images, self.depths = torch.cat(images).to(device), torch.cat(depths).to(device)
         self.image = torch.from_numpy(place_of).to(device)
         self.conditions, self.device = list(conditions), device
         self.anchors = torch.nonzero(self.image >= 0)  # (m, 2): condition, view
@@ -96,6 +102,7 @@ class Data:
         self.first, self.count = tensor(first), tensor(count)  # views on the path of each route
         self.place, self.route = tensor(table["place"].astype(np.int64)), tensor(route)
         self.along, self.position = tensor(table["along"]), tensor(table["pose"][:, :2])
+        self.camera, self.rotation = tensor(table["camera"][:, :3]), _rotations(tensor(table["camera"][:, 3:]))
         self.action = tensor(table["action"])
         turn = torch.atan2(self.action[:, -1, 3], self.action[:, -1, 2]).abs()
         self.turning = self.anchors[turn[self.anchors[:, 1]] > TURN]
@@ -125,7 +132,15 @@ class Data:
         goal_condition = torch.where(negative, stray[:, 0], goal_condition)
         dist = torch.where(negative, torch.full_like(aim.dist, float(MAX_STEPS)), aim.dist)
         seen, sought = self.image[aim.condition, aim.anchor], self.image[goal_condition, goal]
-        return Batch(self.images[seen], self.images[sought], dist, aim.action, aim.ahead & ~negative, aim.condition, goal_condition)
+        sights = self._sight(seen, aim.anchor), self._sight(sought, torch.where(negative, stray[:, 1], aim.goal))
+        return Batch(
+            self.images[seen], self.images[sought], dist, aim.action, aim.ahead & ~negative, aim.condition, goal_condition, sights
+        )
+
+    def _sight(self, image: Tensor, view: Tensor) -> Sight:
+        # Places have coordinates of their own: they are set apart, so that goals elsewhere match nothing.
+        apart = self.place[view, None] * self.camera.new_tensor([0.0, 0.0, 1000.0])
+        return Sight(self.depths[image].float(), self.camera[view] + apart, self.rotation[view])
 
     def _draw(self, below: int, count: int, generator: torch.Generator) -> Tensor:
         return (torch.rand(count, generator=generator, device=self.device) * below).long().clamp(max=max(below - 1, 0))
@@ -162,6 +177,17 @@ def _chosen(first: Tensor, yes: _Aim, no: _Aim) -> _Aim:
         torch.where(first, getattr(yes, name), getattr(no, name)) for name in ("condition", "anchor", "goal", "dist", "ahead")
     )
     return _Aim(condition, anchor, goal, dist, torch.where(first[:, None, None], yes.action, no.action), ahead)
+
+
+def _rotations(quaternion: Tensor) -> Tensor:
+    """(n, 3, 3) of unit quaternions (n, 4) w, x, y, z."""
+    w, x, y, z = quaternion.unbind(1)
+    rows = [
+        *(1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)),
+        *(2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)),
+        *(2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)),
+    ]
+    return torch.stack(rows, 1).reshape(-1, 3, 3)
 
 
 def normalised(images: Tensor) -> Tensor:

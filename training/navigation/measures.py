@@ -11,6 +11,8 @@ from torch.nn import functional
 
 from .dataset import Batch, Data, Sampling, normalised
 from .labels import MAX_STEPS, SPACING
+from .matches import Matches, cell_depths, matches, relative_poses
+from .model import Answer
 
 Network = Callable[[Tensor, Tensor], tuple[Tensor, Tensor]]
 
@@ -18,11 +20,14 @@ Network = Callable[[Tensor, Tensor], tuple[Tensor, Tensor]]
 @dataclass(frozen=True)
 class Weights:
     """alpha: share of the distance in the loss, as in GNM; heading: of the cosine loss, relative to the waypoints;
-    scale: of waypoints in the squared error [steps]."""
+    scale: of waypoints in the squared error [steps]; match, depth, pose: of the losses that teach geometry."""
 
     alpha: float = 0.5
     heading: float = 1.0
     scale: float = 2.5
+    match: float = 0.1
+    depth: float = 0.1
+    pose: float = 0.2
 
 
 def loss(dist: Tensor, action: Tensor, batch: Batch, weights: Weights) -> Tensor:
@@ -34,6 +39,29 @@ def loss(dist: Tensor, action: Tensor, batch: Batch, weights: Weights) -> Tensor
     total = valid.sum().clamp(min=1)
     motion = ((place + weights.heading * heading) * valid).sum() / total
     return weights.alpha * distance + (1 - weights.alpha) * motion
+
+
+def geometry_loss(answer: Answer, batch: Batch, weights: Weights) -> Tensor:
+    """Loss of the cells that match (cross entropy), the depth of the cells (absolute error of the logarithm) and the
+    relative pose of views that share a tenth of their cells (m, smooth absolute error)."""
+    here, there = batch.sights
+    forth, back = matches(here, there), matches(there, here)
+    match = (_match_loss(answer.here_there, forth) + _match_loss(answer.there_here, back)) / 2
+    depth = torch.zeros((), device=match.device)
+    for estimate, sight in zip(answer.depths, batch.sights, strict=True):
+        true = cell_depths(sight.depth)
+        error = (estimate.float() - true.clamp(0.05, 40).log()).abs() * (true > 0)
+        depth = depth + error.mean() / 2
+    shared = (forth.is_seen.float().mean(1) > 0.1).float()
+    gap = functional.smooth_l1_loss(answer.pose, relative_poses(here, there), reduction="none", beta=0.2).mean(1)
+    pose = (gap * shared).sum() / shared.sum().clamp(min=1)
+    return weights.match * match + weights.depth * depth + weights.pose * pose
+
+
+def _match_loss(scores: Tensor, true: Matches) -> Tensor:
+    share = functional.log_softmax(scores.float(), 2)
+    found = -(share.gather(2, true.cells) * true.weights).sum(2)
+    return torch.where(true.is_seen, found, -share[:, :, -1]).mean()
 
 
 @torch.no_grad()

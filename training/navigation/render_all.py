@@ -1,7 +1,7 @@
 """Renders the scenes of routes.py and packs the images: `python3 -m training.navigation.render_all DATA --gloam PROGRAM`.
 
 DATA/images/SCENE/*.png are the images; a scene that is complete is not rendered again. DATA/images_CONDITION.npz has
-`images` (n, 64, 85, 3) uint8 and `rows` (n,), their rows in routes.npz. Scenes that fail, or for which there is no time
+`images` (n, 64, 85, 3) uint8, `depths` (n, 64, 85) uint16 [mm] and `rows` (n,), their rows in routes.npz. Scenes that fail, or for which there is no time
 left, are named in DATA/render.json and lack their rows. Rendering needs the standard library only, packing NumPy and
 Pillow.
 """
@@ -34,23 +34,29 @@ class Renderer:
         """Renders all cameras of a scene to a folder. The answer has the state done, kept, failed or late."""
         views = scene.read_text().count("[[camera]]")
         begin = time.monotonic()
-        if len(list(folder.glob("v*.png"))) == views:
+        if _complete(folder) == views:
             return {"scene": scene.stem, "state": "kept", "views": views}
         if begin >= self.deadline:
             return {"scene": scene.stem, "state": "late", "views": 0}
         command = [self.program, "render", str(scene), "--tier", "interactive", "--device", self.device]
-        command += ["--resolution", f"{WIDTH}x{HEIGHT}", "--time", "0", "--out", str(folder)]
+        command += ["--resolution", f"{WIDTH}x{HEIGHT}", "--time", "0", "--output", "rgb,depth_png"]
+        command += ["--out", str(folder)]
         folder.mkdir(parents=True, exist_ok=True)
         with open(folder / "log.txt", "w+b") as log:
             code = _run(command, log, self.deadline)
             log.seek(0)
             message = log.read().decode(errors="replace").replace("\r", "\n").strip().splitlines()
-        written = len(list(folder.glob("v*.png")))
+        written = _complete(folder)
         state = "done" if code == 0 and written == views else "late" if code is None else "failed"
         answer = {"scene": scene.stem, "state": state, "views": written, "seconds": round(time.monotonic() - begin, 2)}
         if state == "failed":
             answer["message"] = " | ".join(message[-3:]) or f"exit code {code}, {written} of {views} images"
         return answer
+
+
+def _complete(folder: Path) -> int:
+    """Number of views with both files."""
+    return sum((folder / f"{image.stem}_depth.png").exists() for image in folder.glob("v?????.png"))
 
 
 def _run(command: list[str], log: Any, deadline: float) -> int | None:
@@ -95,19 +101,21 @@ def pack(data: Path, condition: str) -> int:
 
     with np.load(data / "routes.npz") as table:
         names, place = [str(name) for name in table["names"]], table["place"]
-    images, rows = [], []
+    images, depths, rows = [], [], []
     for number, name in enumerate(names):
         mine = np.flatnonzero(place == number)
-        files = sorted((data / "images" / f"{name}_{condition}").glob("v*.png"))
-        if len(files) != len(mine):
+        folder = data / "images" / f"{name}_{condition}"
+        if _complete(folder) != len(mine):
             continue
-        for file in files:
-            with Image.open(file) as image:
+        for file in sorted(folder.glob("v?????.png")):
+            with Image.open(file) as image, Image.open(folder / f"{file.stem}_depth.png") as depth:
                 images.append(np.asarray(image.convert("RGB"), dtype=np.uint8))
+                depths.append(np.asarray(depth).astype(np.uint16))
         rows.append(mine)
-    stack = np.stack(images) if images else np.zeros((0, HEIGHT, WIDTH, 3), np.uint8)
+    size = (len(images), HEIGHT, WIDTH)
+    stacks = {"images": np.reshape(images, (*size, 3)).astype(np.uint8), "depths": np.reshape(depths, size).astype(np.uint16)}
     index = np.concatenate(rows) if rows else np.zeros(0, np.int64)
-    np.savez(data / f"images_{condition}.npz", images=stack, rows=index)
+    np.savez(data / f"images_{condition}.npz", **stacks, rows=index)
     return len(index)
 
 

@@ -35,7 +35,8 @@ LENGTHS = (4.0, 12.0)  # of paths [m]
 @dataclass(frozen=True)
 class Views:
     """Rows of a table of n views. place: number; route: number, unique over all places; drive: 0 on the path, 1 straying;
-    along: progress on the path [m]; pose: (n, 3) x, y, yaw [m, rad]; action: (n, 5, 4) label (labels.waypoints)."""
+    along: progress on the path [m]; pose: (n, 3) x, y, yaw [m, rad]; action: (n, 5, 4) label (labels.waypoints); camera:
+    (n, 7) its position [m] and orientation w, x, y, z."""
 
     place: NDArray[np.int32]
     route: NDArray[np.int32]
@@ -43,6 +44,7 @@ class Views:
     along: NDArray[np.float32]
     pose: NDArray[np.float32]
     action: NDArray[np.float32]
+    camera: NDArray[np.float32]
 
     def __len__(self) -> int:
         return len(self.place)
@@ -69,6 +71,7 @@ def route_views(path: Path, space: Grid, rng: np.random.Generator, place: int, r
                 along.astype(np.float32),
                 poses.astype(np.float32),
                 action.astype(np.float32),
+                np.column_stack(camera_poses(poses, rng)).astype(np.float32),
             )
         )
     return joined(parts)
@@ -102,10 +105,9 @@ def space_of(place: Place, folder: File) -> Grid:
     return shared_space([free_space(world, (), RADIUS) for world in worlds])
 
 
-def write_place(place: Place, views: Views, folder: File, seed: int) -> None:
+def write_place(place: Place, views: Views, folder: File) -> None:
     """Writes the scenes of a place; all conditions have the same cameras."""
-    rng = np.random.default_rng((seed, place.seed, len(views)))
-    cameras = cameras_toml(*camera_poses(views.pose.astype(np.float64), rng))
+    cameras = cameras_toml(views.camera[:, :3], views.camera[:, 3:])
     for condition in CONDITIONS:
         (folder / f"{place.name}_{condition}.toml").write_text(place_toml(place, condition) + cameras)
 
@@ -132,7 +134,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
         except gloam.Error as error:
             print(f"{place.name}: skipped: {error}", flush=True)
             continue
-        write_place(place, views, scenes, options.seed)
+        write_place(place, views, scenes)
         pairs.append(place_pairs(views, space, sum(map(len, parts)), options.seed))
         parts.append(views)
         names.append(place.name)

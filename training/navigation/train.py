@@ -21,7 +21,7 @@ from torch import Tensor
 from . import export
 from .augment import Augmentation, changed, mirrored
 from .dataset import Batch, Data, Sampling, normalised, split
-from .measures import Weights, loss, validate
+from .measures import Weights, geometry_loss, loss, validate
 from .model import Policy, parameters_of
 
 
@@ -69,8 +69,8 @@ class Trainer:
             group["lr"] = self.settings.rate * one_cycle(progress)
         batch, observation, goal = self.inputs(self.data.sample(self.settings.batch, self.generator, Sampling()))
         with torch.autocast(self.data.device, torch.bfloat16, enabled=self.data.device == "cuda"):
-            dist, action = self.policy(observation, goal)
-        value = loss(dist, action, batch, Weights())
+            answer = self.policy.answer(observation, goal)
+        value = loss(answer.dist, answer.action, batch, Weights()) + geometry_loss(answer, batch, Weights())
         self.optimizer.zero_grad(set_to_none=True)
         value.backward()
         torch.nn.utils.clip_grad_norm_(self.policy.parameters(), 1.0)

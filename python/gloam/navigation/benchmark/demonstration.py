@@ -8,6 +8,7 @@ import uuid
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 
 import gloam
 from gloam._distribute.manifest import publish
@@ -17,26 +18,35 @@ from ..topological_map import MapSource, Node, TopologicalMap
 from .places import CAMERA, ROBOT, TOP_SPEED, Pair, ground_of, image_options, world_of
 
 SPACING = 0.5  # of nodes [m]
+TURN = 0.35  # between nodes at most [rad]: a robot slows down in turns, and a recorder that keeps time gets more images
 _SIZE = (160, 120)  # [px]
 
 
-def poses_along(pair: Pair, spacing: float = SPACING) -> list[tuple[float, float, float]]:
-    """(x, y, yaw) every `spacing` metres from start to goal; the heading follows the path ahead [m, rad]."""
+def poses_along(pair: Pair) -> list[tuple[float, float, float]]:
+    """(x, y, yaw) from start to goal, after each SPACING and each TURN; the heading follows the path ahead [m, rad]."""
     points = np.array(pair.path)
     lengths = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(points, axis=0).T))])
-    count = max(2, math.ceil(float(lengths[-1]) / spacing) + 1)
-    at = np.linspace(0.0, float(lengths[-1]), count)
-    x, y = np.interp(at, lengths, points[:, 0]), np.interp(at, lengths, points[:, 1])
-    ahead = np.minimum(at + 0.6, lengths[-1])
-    behind = ahead - 0.6  # near the goal the heading follows the last part
-    dx = np.interp(ahead, lengths, points[:, 0]) - np.interp(behind, lengths, points[:, 0])
-    dy = np.interp(ahead, lengths, points[:, 1]) - np.interp(behind, lengths, points[:, 1])
-    return [(float(a), float(b), float(c)) for a, b, c in zip(x, y, np.arctan2(dy, dx), strict=True)]
+
+    def poses(at: NDArray[np.float64]) -> NDArray[np.float64]:
+        ahead = np.minimum(at + 0.6, lengths[-1])
+        behind = ahead - 0.6  # near the goal the heading follows the last part
+        here, first, last = (
+            np.column_stack([np.interp(along, lengths, points[:, axis]) for axis in (0, 1)]) for along in (at, behind, ahead)
+        )
+        side = last - first
+        return np.column_stack([here, np.unwrap(np.arctan2(side[:, 1], side[:, 0]))])
+
+    fine = np.linspace(0.0, float(lengths[-1]), max(2, math.ceil(float(lengths[-1]) / 0.02) + 1))
+    share = np.maximum(np.diff(fine) / SPACING, np.abs(np.diff(poses(fine)[:, 2])) / TURN)
+    progress = np.concatenate([[0.0], np.cumsum(share)])
+    count = max(2, math.ceil(float(progress[-1])) + 1)
+    at = np.interp(np.linspace(0.0, float(progress[-1]), count), progress, fine)
+    return [(float(x), float(y), math.remainder(float(yaw), math.tau)) for x, y, yaw in poses(at)]
 
 
 def demonstrate(place: str, pair: Pair, tier: str = "interactive") -> TopologicalMap:
-    """The map of a pair: the robot stands at each node, at level none. Node times correspond to a walk at TOP_SPEED.
-    tier: of images."""
+    """The map of a pair: the robot stands at each node, at level none. Node times correspond to a walk
+    at TOP_SPEED that slows down in turns. tier: of images."""
     world = world_of(place, "none")
     ground = ground_of(place)
     nodes: list[Node] = []
