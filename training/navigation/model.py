@@ -113,12 +113,13 @@ class Policy(nn.Module):
         similar = torch.matmul(here.transpose(1, 2), there)  # (n, 88 here, 88 there)
         here_there, there_here = self._scores(similar), self._scores(similar.transpose(1, 2))
         depths = self.depth(seen).flatten(1), self.depth(sought).flatten(1)
-        parts = [self.reduced(seen), self.reduced(sought), self.matches(_map(similar.transpose(1, 2))), self._flow(here_there, depths)]
-        features = self.head(self.joined(torch.cat(parts, 1)))
+        compared = [self.matches(_map(similar.transpose(1, 2))), self._flow(here_there, depths)]
+        features = self.head(self.joined(torch.cat([self.reduced(seen), self.reduced(sought), *compared], 1)))
         raw = self.action(features).reshape(-1, WAYPOINTS, 4).float()
         headings = functional.normalize(raw[:, :, 2:], dim=2, eps=1e-6)
         action = torch.cat([torch.cumsum(raw[:, :, :2], 1), headings], 2)
-        return Answer(self.dist(features).float() * MAX_STEPS, action, here_there, there_here, depths, self.pose(features).float())
+        dist, pose = self.dist(features).float() * MAX_STEPS, self.pose(features).float()
+        return Answer(dist, action, here_there, there_here, depths, pose)
 
     def _scores(self, similar: Tensor) -> Tensor:
         none = self.none.to(similar.dtype).expand(similar.shape[0], similar.shape[1], 1)

@@ -1,9 +1,9 @@
 """Renders the scenes of routes.py and packs the images: `python3 -m training.navigation.render_all DATA --gloam PROGRAM`.
 
 DATA/images/SCENE/*.png are the images; a scene that is complete is not rendered again. DATA/images_CONDITION.npz has
-`images` (n, 64, 85, 3) uint8, `depths` (n, 64, 85) uint16 [mm] and `rows` (n,), their rows in routes.npz. Scenes that fail, or for which there is no time
-left, are named in DATA/render.json and lack their rows. Rendering needs the standard library only, packing NumPy and
-Pillow.
+`images` (n, 64, 85, 3) uint8, `depths` (n, 64, 85) uint16 [mm] and `rows` (n,), their rows in routes.npz. Scenes that
+fail, or for which there is no time left, are named in DATA/render.json and lack their rows. Rendering needs the standard
+library only, packing NumPy and Pillow.
 """
 
 from __future__ import annotations
