@@ -18,6 +18,7 @@ class LoggedMotion final : public Motion {
   static Result<std::unique_ptr<LoggedMotion>> create(
       const LoggedRuns::Run& run, const std::shared_ptr<const CompiledWorld>& world);
   Status advance(int64_t step, mjData* data) override;
+  bool moves_agents() const override { return !same_.before.agents.empty(); }
   void read_sensors(std::span<double> sensordata) const override;
 
  private:

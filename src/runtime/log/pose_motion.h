@@ -24,6 +24,7 @@ class PoseMotion final : public Motion {
                                                     std::shared_ptr<const CompiledWorld> to);
   /// Before the first logged state bodies stand as in it.
   Status advance(int64_t step, mjData* data) override;
+  bool moves_agents() const override { return !same_.before.agents.empty(); }
 
  private:
   struct FirstState {

@@ -14,11 +14,25 @@ Result<World> compile_scene(const Scene& scene, const CompiledWorld& logged) {
                                  : World::compile_at(scene, logged.keyframe);
 }
 
-/// The World that `scene` compiles to, if it moves as the log's does.
+/// `scene` without people and vehicles.
+Scene without_agents(Scene scene) {
+  scene.agents.clear();
+  scene.crowds.clear();
+  if (scene.adversity) scene.adversity->people = 0;
+  return scene;
+}
+
+/// The World that `scene` compiles to, if bodies of the log's World move in it as they did. People
+/// and vehicles may be added to a run without any: they walk by themselves and touch nothing.
 Result<World> compile_alike(const Scene& scene, const CompiledWorld& logged) {
   Result<World> world = compile_scene(scene, logged);
   if (!world.ok()) return world;
-  const std::string field = physical_difference(*logged.model, *world->compiled()->model);
+  std::shared_ptr<const CompiledWorld> changed = world->compiled();
+  if (logged.agents.empty() && !changed->agents.empty()) {
+    GLOAM_TRY(const World alone, compile_scene(without_agents(scene), logged));
+    changed = alone.compiled();
+  }
+  const std::string field = physical_difference(*logged.model, *changed->model);
   if (field.empty()) return world;
   return Error{
       ErrorKind::kUsage,

@@ -60,19 +60,32 @@ const VoidOption* find_void(std::string_view path) {
   return nullptr;
 }
 
-std::map<std::string, std::string> values_of(const Scene& scene) {
+bool is_of_agents(std::string_view table) {
+  return table == "agent" || table == "crowd" || table == "adversity" || table == "navigation";
+}
+
+bool has_agents(const Scene& scene) {
+  return !scene.agents.empty() || !scene.crowds.empty() || scene.adversity;
+}
+
+std::map<std::string, std::string> values_of(const Scene& scene, bool with_agents) {
   std::map<std::string, std::string> values;
-  for (OptionInfo& option : list_options(scene))
-    if (find_void(option.path) != nullptr) values[option.path] = std::move(option.value);
+  for (OptionInfo& option : list_options(scene)) {
+    const VoidOption* found = find_void(option.path);
+    if (found != nullptr && (with_agents || !is_of_agents(found->table)))
+      values[option.path] = std::move(option.value);
+  }
   return values;
 }
 
 }  // namespace
 
 Status check_options_act(const Scene& logged, const Scene& changed) {
-  std::map<std::string, std::string> before = values_of(logged);
+  // Agents of a run without any are new, and walk by themselves.
+  const bool with_agents = has_agents(logged) || !has_agents(changed);
+  std::map<std::string, std::string> before = values_of(logged, with_agents);
   std::string other;
-  for (const auto& [path, value] : values_of(changed)) {
+  for (const auto& [path, value] : values_of(changed, with_agents)) {
     const auto same = before.extract(path);
     if (same.empty() ? !value.empty() : same.mapped() != value) {
       other = path;

@@ -1,6 +1,6 @@
 #pragma once
-// Options of a scene that can change nothing in a replay: physics, controllers and agents do not
-// run in one, bodies move as they are logged.
+// Options of a scene that can change nothing in a replay: physics, controllers and the agents of
+// the log do not run in one, bodies move as they are logged.
 
 #include "gloam/result.h"
 #include "gloam/scene.h"

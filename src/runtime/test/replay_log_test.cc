@@ -1,5 +1,6 @@
 // Logged runs seen again: the same motion, another world to look at.
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include <fstream>
@@ -174,6 +175,37 @@ std::map<double, std::vector<double>> states_of(const std::string& csv) {
 }
 
 // Logged 100 times a second, as state.csv is: there poses are what they were.
+TEST_F(Replays, PeopleAreAddedAndWalkWhileBodiesMoveAsLogged) {
+  folder_.write("people.toml", R"(
+[[agent]]
+name = "ada"
+position = [0, 1.5, 0]
+heading = -90
+speed = 1.5
+behavior = "spline"
+route = [{ position = [0, 1.5, 0] }, { position = [0, -2, 0] }]
+)");
+  std::map<ReplayMotion, std::string> last;
+  for (const ReplayMotion motion : {ReplayMotion::kStepped, ReplayMotion::kPoses}) {
+    const std::string out = fmt::format("people{}", static_cast<int>(motion));
+    LogReplay replay{.log = log_, .motion = motion, .overlays = {folder_.path() / "people.toml"}};
+    replay.outputs = {"segmentation", "state"};
+    replay.request.out = folder_.path() / out;
+    const auto report = replay_log(replay, {});
+    ASSERT_TRUE(report.ok()) << report.error().to_string();
+    ASSERT_TRUE(report->status.ok()) << report->status.error().to_string();
+    if (motion == ReplayMotion::kStepped) {
+      EXPECT_EQ(file(out.c_str(), "state.csv"), file("first", "state.csv"));
+    }
+    const auto instances = [&](int frame) {
+      return file(out.c_str(), fmt::format("eye/instance/{:06}.png", frame).c_str());
+    };
+    EXPECT_NE(instances(1), instances(3)) << "she walks";
+    last[motion] = instances(3);
+  }
+  EXPECT_EQ(last[ReplayMotion::kStepped], last[ReplayMotion::kPoses]);
+}
+
 TEST_F(Replays, PosesAreThoseOfTheLog) {
   LogReplay replay{.log = log_, .motion = ReplayMotion::kPoses};
   replay.request.out = folder_.path() / "poses";

@@ -11,8 +11,9 @@ namespace gloam {
 
 bool Stepper::follow(std::unique_ptr<Motion> motion) {
   motion_ = std::move(motion);
-  // What moves bodies of its own would undo the motion, which has their poses already.
-  std::erase_if(effects_, [](const auto& effect) { return effect->moves_bodies(); });
+  // What moves bodies of its own would undo the motion, if that has their poses already.
+  if (motion_->moves_agents())
+    std::erase_if(effects_, [](const auto& effect) { return effect->moves_bodies(); });
   if (const Status moved = motion_->advance(0, data_.get()); !moved.ok())
     return fail(moved.error());
   return begin_where_moved() || fail({ErrorKind::kInput, mujoco_error_message()});
