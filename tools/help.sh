@@ -59,8 +59,13 @@ answer_help() {  # answer_help ARG…
     setup) setup_help ;;
     test) python_help "$root/tests/run.py" ;;
     bench)
-      if [ "${2:-}" = nav ]; then python_help "$root/tools/navigation/commands.py" bench; else python_help "$root/bench/run.py"; fi
+      case "${2:-}" in
+        nav) python_help "$root/tools/navigation/commands.py" bench ;;
+        slam) python_help "$root/tools/slam/commands.py" bench ;;
+        *) python_help "$root/bench/run.py" ;;
+      esac
       ;;
+    slam) python_help "$root/tools/slam/commands.py" ${2:+"$2"} ;;
     map | navigate) python_help "$root/tools/navigation/commands.py" "$1" ;;
     pack) python_help "$root/tools/pack.py" ;;
     wheel) python_help "$root/tools/wheel.py" ;;

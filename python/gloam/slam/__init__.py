@@ -1,0 +1,1 @@
+"""SLAM methods on sequences of Gloam, and their benchmark (docs/slam.md)."""

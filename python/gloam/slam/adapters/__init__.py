@@ -1,0 +1,1 @@
+"""Programs that run SLAM methods, and the files that they share with the benchmark (contract.py)."""

@@ -1,0 +1,223 @@
+"""`gloam bench slam`: methods on the same motion under several conditions.
+
+A tour of each scene is recorded once and replayed under each level; all methods read the same sequences. Every part is a folder
+that gets its name when it is complete: a repeated call continues after any interruption.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+import shutil
+import subprocess
+import time
+import uuid
+from collections.abc import Callable, Iterator
+from concurrent.futures import ThreadPoolExecutor, as_completed
+from contextlib import contextmanager
+from dataclasses import asdict, dataclass, fields
+from pathlib import Path
+from typing import Any
+
+import gloam
+from gloam._distribute.manifest import publish, write_json
+from gloam.navigation.benchmark.files import locked
+from gloam.navigation.benchmark.places import ALL_LEVELS, LEVELS, PLACES
+from gloam.navigation.benchmark.request import machine_name
+from gloam.navigation.benchmark.words import duration
+
+from .methods import Method, load_method, python_of
+from .run import run_method
+from .sequence import Condition, make_sequence
+from .tour import Tour, record_tour
+
+REQUEST, OUTCOME, VOCABULARY = "request.json", "outcome.json", "vocabulary.txt"
+_PART = "."  # begins the names of folders that are being written
+_MAY_DIFFER = {"methods", "runs", "machine", "version", "started"}  # between the calls that continue a benchmark
+Tell = Callable[[str], None]
+
+
+@dataclass(frozen=True)
+class Request:
+    """Runs of a results folder: all methods x scenes x levels x numbers 0 … runs - 1.
+
+    methods: names, or TOML files; legs, duration [s] (None = all): of the tours; tier, width, height, rate: of the images;
+    limit: time that a run may take, per second of its sequence; vocabulary: file for ORB-SLAM, "" = made from the images in
+    clear air; machine, version, started: text for the page.
+    """
+
+    methods: tuple[str, ...]
+    scenes: tuple[str, ...] = ("house", "warehouse")
+    levels: tuple[str, ...] = LEVELS
+    runs: int = 10
+    seed: int = 1
+    legs: int = 3
+    duration: float | None = None
+    tier: str = "interactive"
+    width: int = 640
+    height: int = 480
+    rate: float = 20.0
+    limit: float = 20.0
+    vocabulary: str = ""
+    machine: str = ""
+    version: str = ""
+    started: str = ""
+
+    def check(self) -> None:
+        """Errors: NotFoundError for an unknown scene or level; UsageError for names twice and numbers out of range."""
+        for kind, asked, known in (("scene", self.scenes, tuple(PLACES)), ("level", self.levels, ALL_LEVELS)):
+            for name in asked:
+                if name not in known:
+                    raise gloam.NotFoundError(f"there is no {kind} '{name}'; there are: {', '.join(known)}")
+        for kind, asked in (("method", self.methods), ("scene", self.scenes), ("level", self.levels)):
+            if not asked or len(set(asked)) != len(asked):
+                raise gloam.UsageError(f"name each {kind} once, got {', '.join(asked) or 'none'}")
+        if not 1 <= self.runs <= 10_000 or not 0 <= self.seed < 2**32 or not 1 <= self.legs <= 20:
+            raise gloam.UsageError("expected 1 to 10000 runs, 1 to 20 legs, and a seed from 0 to 2^32 - 1")
+        if not (16 <= self.width <= 4096 and 16 <= self.height <= 4096 and 0.1 <= self.rate <= 1000 and 0 < self.limit <= 1e6):
+            raise gloam.UsageError("expected images of 16 to 4096 pixels, a rate of 0.1 to 1000 Hz and a limit above 0")
+
+    def keep(self, out: Path) -> None:
+        """Writes request.json, or continues the benchmark that the folder holds. Errors: UsageError if that is another one."""
+        file = out / REQUEST
+        known: dict[str, Any] = json.loads(file.read_text(encoding="utf-8")) if file.is_file() else {}
+        mine = json.loads(json.dumps(asdict(self)))
+        for field in fields(self):
+            if known and field.name not in _MAY_DIFFER and known.get(field.name) != mine[field.name]:
+                raise gloam.UsageError(
+                    f"{out} holds a benchmark with another {field.name}: {known.get(field.name)}, not {mine[field.name]}",
+                    hint="choose another folder",
+                )
+        if known:
+            mine |= {"methods": list(dict.fromkeys([*known["methods"], *self.methods])), "runs": max(self.runs, known["runs"])}
+            mine["started"] = known["started"]
+        else:
+            mine["started"] = time.strftime("%Y-%m-%d")
+        mine |= {"machine": machine_name(), "version": gloam.__version__}
+        write_json(file, mine)
+
+
+@dataclass(frozen=True)
+class Key:
+    """The place of a run in the benchmark."""
+
+    method: str
+    scene: str
+    level: str
+    number: int
+
+    @property
+    def path(self) -> Path:
+        """Its folder in `runs` of the results."""
+        return Path(self.method, self.scene, self.level, f"{self.number:04}")
+
+
+def run(request: Request, out: Path, workers: int = 1, tell: Tell | None = None) -> list[dict[str, Any]]:
+    """Makes the missing parts of a folder. Returns all outcomes, each with its key.
+
+    workers: methods that run at the same time; more than one disturbs times per frame. Errors: as Request.check and
+    load_method; UsageError if a method cannot start or the folder is in use; gloam.Error, OSError if files cannot be written.
+    """
+    request.check()
+    say = tell or (lambda _: None)
+    methods = {method.name: method for method in map(load_method, request.methods)}
+    if len(methods) != len(request.methods):
+        raise gloam.UsageError("two methods have one name")
+    for method in methods.values():  # before hours of rendering
+        method.words({"sequence": "", "out": "", "truth": "", "seed": "", "vocabulary": ""})
+    out.mkdir(parents=True, exist_ok=True)
+    with locked(out):
+        request.keep(out)
+        _make_cases(request, any(method.has_lidar for method in methods.values()), out, say)
+        vocabulary = _vocabulary(request, methods, out, say)
+        keys = [Key(m, s, v, n) for n in range(request.runs) for s in request.scenes for v in request.levels for m in methods]
+        missing = [key for key in keys if not _file(out, key).is_file()]
+        begin = time.monotonic()
+        with ThreadPoolExecutor(workers) as pool:
+            futures = {pool.submit(_run, methods[key.method], key, request, vocabulary, out): key for key in missing}
+            try:
+                for done, future in enumerate(as_completed(futures), 1):
+                    state = future.result()
+                    left = (time.monotonic() - begin) / done * (len(missing) - done)
+                    say(f"{done} of {len(missing)} runs: {futures[future].path} {state}, {duration(left)} left")
+            except BaseException:
+                pool.shutdown(wait=True, cancel_futures=True)
+                raise
+    return [{**asdict(key), **json.loads(_file(out, key).read_text(encoding="utf-8"))} for key in keys]
+
+
+def _file(out: Path, key: Key) -> Path:
+    return out / "runs" / key.path / OUTCOME
+
+
+def case_of(out: Path, scene: str, level: str) -> Path:
+    """Folder of a sequence and its truth."""
+    return out / "cases" / scene / level
+
+
+@contextmanager
+def _whole(folder: Path) -> Iterator[Path]:
+    """A new folder that gets the name `folder` when the block ends well."""
+    folder.parent.mkdir(parents=True, exist_ok=True)
+    for old in folder.parent.glob(f"{_PART}{folder.name}.*"):  # of a process that was killed
+        shutil.rmtree(old, ignore_errors=True)
+    part = folder.with_name(f"{_PART}{folder.name}.{uuid.uuid4().hex[:12]}")
+    part.mkdir()
+    try:
+        yield part
+        publish(part, folder)
+    finally:
+        shutil.rmtree(part, ignore_errors=True)
+
+
+def _make_cases(request: Request, has_lidar: bool, out: Path, say: Tell) -> None:
+    """Tours and sequences that are missing."""
+    missing = [(s, v) for s in request.scenes for v in request.levels if not case_of(out, s, v).is_dir()]
+    begin = time.monotonic()
+    for done, (scene, level) in enumerate(missing):
+        tour = out / "tours" / scene
+        if not tour.is_dir():
+            say(f"recording a tour of {scene}")
+            with _whole(tour) as part:
+                length = record_tour(Tour(scene, request.seed, request.legs), part / "tour.mcap")
+                write_json(part / "tour.json", {"length": length})
+        left = f", {duration((time.monotonic() - begin) / done * (len(missing) - done))} left" if done else ""
+        say(f"sequence {done + 1} of {len(missing)}: {scene}, {level}{left}")
+        condition = Condition(
+            level, request.tier, request.width, request.height, request.rate, request.duration, has_lidar=has_lidar
+        )
+        with _whole(case_of(out, scene, level)) as part:
+            make_sequence(tour / "tour.mcap", condition, part)
+
+
+def _vocabulary(request: Request, methods: dict[str, Method], out: Path, say: Tell) -> str:
+    """The file for {vocabulary}; "" if no method has it."""
+    users = [method for method in methods.values() if any("{vocabulary}" in word for word in method.command)]
+    if not users or request.vocabulary:
+        return request.vocabulary and str(Path(request.vocabulary).resolve())
+    file = out / VOCABULARY
+    if not file.is_file():
+        say("making the vocabulary of ORB features")
+        part = file.with_name(f".{VOCABULARY}")
+        script = Path(__file__).with_name("adapters") / "vocabulary.py"
+        images = [str(case_of(out, scene, request.levels[0]) / "sequence" / "rgb") for scene in request.scenes]
+        python = python_of(next(method.environment for method in users if method.environment))
+        done = subprocess.run([str(python), str(script), str(part), *images], capture_output=True, text=True, check=False)
+        if done.returncode != 0:
+            raise gloam.Error(f"the vocabulary cannot be made: {(done.stderr.strip().splitlines() or ['no output'])[-1]}")
+        part.replace(file)
+    return str(file.resolve())
+
+
+def _run(method: Method, key: Key, request: Request, vocabulary: str, out: Path) -> str:
+    case = case_of(out, key.scene, key.level).resolve()
+    stamps = re.findall(r"^[\d.]+", (case / "truth.tum").read_text(encoding="utf-8"), re.MULTILINE)
+    limit = 60.0 + request.limit * (float(stamps[-1]) - float(stamps[0]))
+    with _whole((out / "runs" / key.path).resolve()) as part:
+        values = {"seed": str(request.seed * 1000 + key.number), "vocabulary": vocabulary}
+        outcome = run_method(method, case, part / "files", values, limit)
+        for file in (part / "files").iterdir():
+            shutil.move(file, part / file.name)
+        (part / "files").rmdir()
+        write_json(part / OUTCOME, outcome.as_dict())
+    return outcome.state
