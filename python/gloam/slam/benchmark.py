@@ -128,7 +128,7 @@ def run(request: Request, out: Path, workers: int = 1, tell: Tell | None = None)
     out.mkdir(parents=True, exist_ok=True)
     with locked(out):
         request.keep(out)
-        _make_cases(request, any(method.has_lidar for method in methods.values()), out, say)
+        _make_cases(request, {method.sensors.removesuffix("_imu") for method in methods.values()}, out, say)
         vocabulary = _vocabulary(request, methods, out, say)
         keys = [Key(m, s, v, n) for n in range(request.runs) for s in request.scenes for v in request.levels for m in methods]
         missing = [key for key in keys if not _file(out, key).is_file()]
@@ -170,9 +170,14 @@ def _whole(folder: Path) -> Iterator[Path]:
         shutil.rmtree(part, ignore_errors=True)
 
 
-def _make_cases(request: Request, has_lidar: bool, out: Path, say: Tell) -> None:
-    """Tours and sequences that are missing."""
-    missing = [(s, v) for s in request.scenes for v in request.levels if not case_of(out, s, v).is_dir()]
+_SENSOR_FILES = {"stereo": "right.txt", "lidar": "scans.txt"}  # of sequences that have these sensors
+
+
+def _make_cases(request: Request, sensors: set[str], out: Path, say: Tell) -> None:
+    """Tours and sequences that are missing, or that lack a sensor: images are expensive, so only methods that read the right
+    camera or the LiDAR get them. A sequence that is made again has the same images."""
+    needed = {"exists"} | (set(_SENSOR_FILES) & sensors)
+    missing = [(s, v) for s in request.scenes for v in request.levels if not needed <= _sensors_of(case_of(out, s, v))]
     begin = time.monotonic()
     for done, (scene, level) in enumerate(missing):
         tour = out / "tours" / scene
@@ -183,11 +188,21 @@ def _make_cases(request: Request, has_lidar: bool, out: Path, say: Tell) -> None
                 write_json(part / "tour.json", {"length": length})
         left = f", {duration((time.monotonic() - begin) / done * (len(missing) - done))} left" if done else ""
         say(f"sequence {done + 1} of {len(missing)}: {scene}, {level}{left}")
+        case = case_of(out, scene, level)
+        has = {kind: kind in needed | _sensors_of(case) for kind in _SENSOR_FILES}
         condition = Condition(
-            level, request.tier, request.width, request.height, request.rate, request.duration, has_lidar=has_lidar
+            level, request.tier, request.width, request.height, request.rate, request.duration, has["stereo"], has["lidar"]
         )
-        with _whole(case_of(out, scene, level)) as part:
+        with _whole(case) as part:
             make_sequence(tour / "tour.mcap", condition, part)
+            shutil.rmtree(case, ignore_errors=True)
+
+
+def _sensors_of(case: Path) -> set[str]:
+    """The sensors of a sequence beside its left camera, and "exists"; empty if there is no sequence."""
+    if not case.is_dir():
+        return set()
+    return {"exists"} | {kind for kind, file in _SENSOR_FILES.items() if (case / "sequence" / file).is_file()}
 
 
 def _vocabulary(request: Request, methods: dict[str, Method], out: Path, say: Tell) -> str:

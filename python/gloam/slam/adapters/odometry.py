@@ -19,7 +19,7 @@ from contract import INITIALIZING, LOST, TRACKED, Array, Camera, Output, Sequenc
 FEATURES = 1500
 FEWEST = 20  # points that agree, below which a pose is not trusted
 RENEW = 0.5  # of a keyframe's points still in sight, below which the frame becomes the next keyframe
-PARALLAX = 12.0  # median motion of features between the two first frames of one camera [px]
+PARALLAX = 12.0  # median motion of features between two keyframes of one camera [px]
 REPROJECTION = 2.5  # of points that agree [px]
 FARTHEST = 15.0  # depth of points [m]
 PATIENCE = 30  # lost frames after which the odometry begins again at its last pose
@@ -61,7 +61,8 @@ class Odometry:
             return self._miss(view)
         self._lost = 0
         self._pose = self._key_pose @ relative[0]
-        if relative[1] < RENEW * len(matches) or len(matches) < 4 * FEWEST:
+        known = int(np.isfinite(self._key.points).all(1).sum())
+        if relative[1] < max(RENEW * known, 3 * FEWEST):
             self._renew(view, matches, relative[0])
         return TRACKED, self._pose
 
@@ -160,7 +161,7 @@ class Odometry:
         error = np.linalg.norm(back[:, :2] / np.where(np.abs(back[:, 2:]) < 1e-9, 1e-9, back[:, 2:]) - second, axis=1)
         ray = points - pose[:3, 3]
         cosine = (points * ray).sum(1) / np.maximum(np.linalg.norm(points, axis=1) * np.linalg.norm(ray, axis=1), 1e-12)
-        good = (points[:, 2] > 0) & (there[:, 2] > 0) & (error < REPROJECTION) & (cosine < np.cos(np.radians(0.5)))
+        good = (points[:, 2] > 0) & (there[:, 2] > 0) & (error < REPROJECTION) & (cosine < np.cos(np.radians(1.0)))
         return np.where(good[:, None], points, np.nan)
 
     @staticmethod
@@ -172,6 +173,9 @@ class Odometry:
         """The view becomes the keyframe. Known points move into its frame; with one camera, more are triangulated."""
         assert self._key is not None
         if self._sensors == "mono":
+            motion = np.linalg.norm(self._key.pixels[matches[:, 0]] - view.pixels[matches[:, 1]], axis=1)
+            if np.median(motion) < PARALLAX:
+                return  # points of so short a baseline would be far off, and the unit of length would drift
             inverse = np.linalg.inv(relative)
             self._set_points(view, matches[:, 1], self._key.points[matches[:, 0]] @ inverse[:3, :3].T + inverse[:3, 3])
             fresh = matches[~np.isfinite(self._key.points[matches[:, 0]]).all(1)]
@@ -179,7 +183,7 @@ class Odometry:
                 points = self._triangulated(self._key.pixels[fresh[:, 0]], view.pixels[fresh[:, 1]], relative)
                 self._set_points(view, fresh[:, 1], points @ inverse[:3, :3].T + inverse[:3, 3])
             if np.isfinite(view.points).all(1).sum() < 2 * FEWEST:
-                return  # too little parallax: the keyframe stays
+                return
         self._key, self._key_pose = view, self._pose
 
     def _miss(self, view: View) -> tuple[str, Array | None]:

@@ -13,7 +13,7 @@ from pathlib import Path
 import cv2
 import numpy as np
 import pyorbslam3
-from contract import INITIALIZING, LOST, TRACKED, Array, Output, Sequence, rotation
+from contract import INITIALIZING, LOST, TRACKED, Array, Camera, Output, Sequence, rotation
 
 KINDS = {"mono": ("rgb",), "stereo": ("rgb", "right"), "rgbd": ("rgb", "depth")}
 SENSORS = {
@@ -29,32 +29,35 @@ def settings(sequence: Sequence, sensors: str) -> str:
     camera, imu = sequence.camera, sequence.imu_model
     if camera is None or (sensors.endswith("_imu") and imu is None):
         raise ValueError("the sequence has no camera or no IMU")
-    d = [*camera.distortion, 0.0, 0.0, 0.0, 0.0][:4]
     lines = [
         "%YAML:1.0", "---", 'File.version: "1.0"', 'Camera.type: "PinHole"',
-        f"Camera1.fx: {camera.fx}", f"Camera1.fy: {camera.fy}", f"Camera1.cx: {camera.cx}", f"Camera1.cy: {camera.cy}",
-        f"Camera1.k1: {d[0]}", f"Camera1.k2: {d[1]}", f"Camera1.p1: {d[2]}", f"Camera1.p2: {d[3]}",
+        *_lens("Camera1", camera),
         f"Camera.width: {camera.width}", f"Camera.height: {camera.height}", f"Camera.fps: {max(1, round(camera.rate))}", "Camera.RGB: 0",
     ]  # fmt: skip
     if sensors.startswith(("stereo", "rgbd")):
         lines += [f"Stereo.ThDepth: {FARTHEST}", f"Stereo.b: {camera.baseline or 0.05}"]
-        lines += [f"RGBD.DepthMapFactor: {camera.depth_scale}"]
+        lines += [f"RGBD.DepthMapFactor: {float(camera.depth_scale)}"]
     if sensors.startswith("stereo"):
-        lines += [f"Camera2.f{axis}: {value}" for axis, value in (("x", camera.fx), ("y", camera.fy))]
-        lines += [f"Camera2.c{axis}: {value}" for axis, value in (("x", camera.cx), ("y", camera.cy))]
-        lines += [f"Camera2.{name}: {value}" for name, value in zip(("k1", "k2", "p1", "p2"), d, strict=True)]
+        lines += _lens("Camera2", camera)
         right = np.eye(4)
         right[0, 3] = camera.baseline
         lines += _matrix("Stereo.T_c1_c2", right)
     if sensors.endswith("_imu") and imu is not None:
         lines += _matrix("IMU.T_b_c1", np.linalg.inv(np.array(imu.in_camera)))
-        lines += [f"IMU.NoiseGyro: {imu.gyro_noise}", f"IMU.NoiseAcc: {imu.accel_noise}", f"IMU.GyroWalk: {imu.gyro_walk}"]
-        lines += [f"IMU.AccWalk: {imu.accel_walk}", f"IMU.Frequency: {float(imu.rate)}"]
+        noise = {"NoiseGyro": imu.gyro_noise, "NoiseAcc": imu.accel_noise, "GyroWalk": imu.gyro_walk, "AccWalk": imu.accel_walk}
+        lines += [f"IMU.{name}: {float(value)}" for name, value in (noise | {"Frequency": imu.rate}).items()]
     lines += [f"ORBextractor.nFeatures: {FEATURES}", "ORBextractor.scaleFactor: 1.2", "ORBextractor.nLevels: 8"]
     lines += ["ORBextractor.iniThFAST: 20", "ORBextractor.minThFAST: 7"]
     viewer = {"KeyFrameSize": 0.05, "KeyFrameLineWidth": 1.0, "GraphLineWidth": 0.9, "PointSize": 2.0, "CameraSize": 0.08}
     viewer |= {"CameraLineWidth": 3.0, "ViewpointX": 0.0, "ViewpointY": -0.7, "ViewpointZ": -1.8, "ViewpointF": 500.0}
     return "\n".join([*lines, *(f"Viewer.{name}: {value}" for name, value in viewer.items())]) + "\n"
+
+
+def _lens(name: str, camera: Camera) -> list[str]:
+    """Parameters of a camera. ORB-SLAM3 takes real numbers only if they have a decimal point."""
+    numbers = {"fx": camera.fx, "fy": camera.fy, "cx": camera.cx, "cy": camera.cy}
+    numbers |= dict(zip(("k1", "k2", "p1", "p2"), [*camera.distortion, 0.0, 0.0, 0.0, 0.0], strict=False))
+    return [f"{name}.{key}: {float(value)}" for key, value in numbers.items()]
 
 
 def _matrix(name: str, values: Array) -> list[str]:
