@@ -37,7 +37,9 @@ def request_(tmp_path_factory: pytest.TempPathFactory) -> Request:
     command = json.dumps([sys.executable, str(folder / "fails.py"), "{sequence}", "{out}"])
     (folder / "fails.toml").write_text(f'sensors = "stereo"\ncommand = {command}\n')
     methods = ("noisy_truth", str(folder / "fails.toml"))
-    return Request(methods, ("house",), ("none", "minor"), 2, legs=1, duration=2.0, tier="direct", width=64, height=48, rate=5)
+    (folder / "haze.toml").write_text("[weather]\nvisibility = 10\nmedium = 'smoke'\n")
+    levels = ("none", "minor", str(folder / "haze.toml"))
+    return Request(methods, ("house",), levels, 2, legs=1, duration=2.0, tier="direct", width=64, height=48, rate=5)
 
 
 @pytest.fixture(scope="module")
@@ -85,10 +87,25 @@ def test_the_camera_moves_as_the_truth_tells(out: Path) -> None:
     assert 0.2 < way < 1.2 and 0.2 < rows[:, 3].min() < rows[:, 3].max() < 0.45, "a walk of two seconds, 0.3 m above the floor"
 
 
+def test_levels_may_be_scene_files(request_: Request, out: Path) -> None:
+    haze, clear = (np.loadtxt(case_of(out, "house", level) / "visibility.csv", delimiter=",", skiprows=1) for level in ("haze", "none"))
+    assert np.allclose(haze[:, 1], 10, rtol=0.01) and np.allclose(haze[:, 2], 0.3912, rtol=0.01) and clear[:, 1].min() > 1e4
+    assert (out / "overlays" / "haze.toml").read_text() == Path(request_.levels[2]).read_text()
+    Path(request_.levels[2]).write_text("[weather]\nvisibility = 5\n")
+    try:
+        with pytest.raises(gloam.UsageError, match="has changed since"):
+            run(request_, out)
+    finally:
+        Path(request_.levels[2]).write_bytes((out / "overlays" / "haze.toml").read_bytes())
+    with pytest.raises(gloam.IoError, match="cannot read the scene file"):
+        run(replace(request_, levels=("none", str(out / "nothing.toml"))), out / "other")
+
+
 def test_failures_are_in_the_results(request_: Request, out: Path) -> None:
     rows = run(request_, out)
     states = {(row["method"], row["level"]): row["state"] for row in rows}
-    assert states == {("noisy_truth", "none"): "ok", ("fails", "none"): "ok", ("noisy_truth", "minor"): "ok", ("fails", "minor"): "crashed"}
+    assert {key for key, state in states.items() if state != "ok"} == {("fails", "minor")} and len(states) == 6
+    assert states["fails", "minor"] == "crashed"
     failed = next(row for row in rows if row["state"] == "crashed")
     assert "too much smoke" in failed["message"] and failed["measures"]["coverage"] == 0 and failed["measures"]["tracked"] == 0
     noisy = [row["measures"]["ate_sim3"] for row in rows if row["method"] == "noisy_truth" and row["level"] == "none"]
@@ -107,7 +124,7 @@ def test_a_repeated_call_does_what_is_missing(request_: Request, out: Path, tmp_
     assert {file for file in after if after[file] != before.get(file)} == {gone / OUTCOME} and len(after) == len(before)
     assert not list(gone.parent.glob(".*"))
     more = run(replace(request_, runs=3), copy)
-    assert len(more) == 12 and all(old in more for old in first)
+    assert len(more) == 18 and all(old in more for old in first)
     with pytest.raises(gloam.UsageError, match="another rate"):
         run(replace(request_, rate=10), copy)
 
@@ -150,7 +167,7 @@ def test_a_killed_benchmark_continues(request_: Request, out: Path, tmp_path: Pa
     slow.write_text('sensors = "mono"\ncommand = ["sleep", "30"]\n')
     program = (
         "import sys\nfrom pathlib import Path\nfrom gloam.slam.benchmark import Request, run\n"
-        f"run(Request(('noisy_truth', {str(slow)!r}), ('house',), ('none', 'minor'), 2, legs=1, duration=2.0, tier='direct', "
+        f"run(Request(('noisy_truth', {str(slow)!r}), ('house',), {request_.levels!r}, 2, legs=1, duration=2.0, tier='direct', "
         "width=64, height=48, rate=5), Path(sys.argv[1]))"
     )
     process = subprocess.Popen([sys.executable, "-c", program, str(copy)])
@@ -162,4 +179,4 @@ def test_a_killed_benchmark_continues(request_: Request, out: Path, tmp_path: Pa
     kept = outcomes(copy)
     assert kept
     rows = run(replace(request_, methods=("noisy_truth",)), copy)
-    assert len(rows) == 4 and all(outcomes(copy)[file] == stamp for file, stamp in kept.items())
+    assert len(rows) == 6 and all(outcomes(copy)[file] == stamp for file, stamp in kept.items())

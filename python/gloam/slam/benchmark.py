@@ -31,7 +31,7 @@ from .run import run_method
 from .sequence import Condition, make_sequence
 from .tour import Tour, record_tour
 
-REQUEST, OUTCOME, VOCABULARY = "request.json", "outcome.json", "vocabulary.txt"
+REQUEST, OUTCOME, VOCABULARY, OVERLAYS = "request.json", "outcome.json", "vocabulary.txt", "overlays"
 _PART = "."  # begins the names of folders that are being written
 _MAY_DIFFER = {"methods", "runs", "machine", "version", "started"}  # between the calls that continue a benchmark
 Tell = Callable[[str], None]
@@ -41,7 +41,7 @@ Tell = Callable[[str], None]
 class Request:
     """Runs of a results folder: all methods x scenes x levels x numbers 0 … runs - 1.
 
-    methods: names, or TOML files; legs, duration [s] (None = all): of the tours; tier, width, height, rate: of the images;
+    methods: names, or TOML files; levels: of adversity, or scene files that are applied instead; legs, duration [s] (None = all): of the tours; tier, width, height, rate: of the images;
     limit: time that a run may take, per second of its sequence; vocabulary: file for ORB-SLAM, "" = made from the images in
     clear air; machine, version, started: text for the page.
     """
@@ -65,11 +65,12 @@ class Request:
 
     def check(self) -> None:
         """Errors: NotFoundError for an unknown scene or level; UsageError for names twice and numbers out of range."""
-        for kind, asked, known in (("scene", self.scenes, tuple(PLACES)), ("level", self.levels, ALL_LEVELS)):
+        levels = [level for level in self.levels if not level.endswith(".toml")]
+        for kind, asked, known in (("scene", self.scenes, tuple(PLACES)), ("level", levels, ALL_LEVELS)):
             for name in asked:
                 if name not in known:
                     raise gloam.NotFoundError(f"there is no {kind} '{name}'; there are: {', '.join(known)}")
-        for kind, asked in (("method", self.methods), ("scene", self.scenes), ("level", self.levels)):
+        for kind, asked in (("method", self.methods), ("scene", self.scenes), ("level", self.level_names)):
             if not asked or len(set(asked)) != len(asked):
                 raise gloam.UsageError(f"name each {kind} once, got {', '.join(asked) or 'none'}")
         if not 1 <= self.runs <= 10_000 or not 0 <= self.seed < 2**32 or not 1 <= self.legs <= 20:
@@ -77,11 +78,32 @@ class Request:
         if not (16 <= self.width <= 4096 and 16 <= self.height <= 4096 and 0.1 <= self.rate <= 1000 and 0 < self.limit <= 1e6):
             raise gloam.UsageError("expected images of 16 to 4096 pixels, a rate of 0.1 to 1000 Hz and a limit above 0")
 
+    @property
+    def level_names(self) -> tuple[str, ...]:
+        """Names of the levels; a scene file's is its own without the suffix."""
+        return tuple(Path(level).stem if level.endswith(".toml") else level for level in self.levels)
+
+    def _keep_overlays(self, out: Path) -> None:
+        """Copies scene files into the folder, so that it holds all its input. Errors: UsageError if one has changed."""
+        for level, name in zip(self.levels, self.level_names, strict=True):
+            if level == name:
+                continue
+            try:
+                text = Path(level).read_bytes()
+            except OSError as error:
+                raise gloam.IoError(f"cannot read the scene file: {error.strerror}", level) from error
+            kept = out / OVERLAYS / f"{name}.toml"
+            if kept.is_file() and kept.read_bytes() != text:
+                raise gloam.UsageError(f"{level} has changed since {out} was begun", hint="choose another folder")
+            kept.parent.mkdir(exist_ok=True)
+            kept.write_bytes(text)
+
     def keep(self, out: Path) -> None:
         """Writes request.json, or continues the benchmark that the folder holds. Errors: UsageError if that is another one."""
+        self._keep_overlays(out)
         file = out / REQUEST
         known: dict[str, Any] = json.loads(file.read_text(encoding="utf-8")) if file.is_file() else {}
-        mine = json.loads(json.dumps(asdict(self)))
+        mine = json.loads(json.dumps({**asdict(self), "levels": self.level_names}))
         for field in fields(self):
             if known and field.name not in _MAY_DIFFER and known.get(field.name) != mine[field.name]:
                 raise gloam.UsageError(
@@ -130,7 +152,7 @@ def run(request: Request, out: Path, workers: int = 1, tell: Tell | None = None)
         request.keep(out)
         _make_cases(request, {method.sensors.removesuffix("_imu") for method in methods.values()}, out, say)
         vocabulary = _vocabulary(request, methods, out, say)
-        keys = [Key(m, s, v, n) for n in range(request.runs) for s in request.scenes for v in request.levels for m in methods]
+        keys = [Key(m, s, v, n) for n in range(request.runs) for s in request.scenes for v in request.level_names for m in methods]
         missing = [key for key in keys if not _file(out, key).is_file()]
         begin = time.monotonic()
         with ThreadPoolExecutor(workers) as pool:
@@ -177,7 +199,7 @@ def _make_cases(request: Request, sensors: set[str], out: Path, say: Tell) -> No
     """Tours and sequences that are missing, or that lack a sensor: images are expensive, so only methods that read the right
     camera or the LiDAR get them. A sequence that is made again has the same images."""
     needed = {"exists"} | (set(_SENSOR_FILES) & sensors)
-    missing = [(s, v) for s in request.scenes for v in request.levels if not needed <= _sensors_of(case_of(out, s, v))]
+    missing = [(s, v) for s in request.scenes for v in request.level_names if not needed <= _sensors_of(case_of(out, s, v))]
     begin = time.monotonic()
     for done, (scene, level) in enumerate(missing):
         tour = out / "tours" / scene
@@ -190,9 +212,11 @@ def _make_cases(request: Request, sensors: set[str], out: Path, say: Tell) -> No
         say(f"sequence {done + 1} of {len(missing)}: {scene}, {level}{left}")
         case = case_of(out, scene, level)
         has = {kind: kind in needed | _sensors_of(case) for kind in _SENSOR_FILES}
+        overlay = out / OVERLAYS / f"{level}.toml"
         condition = Condition(
-            level, request.tier, request.width, request.height, request.rate, request.duration, has["stereo"], has["lidar"]
-        )
+            level, overlay if overlay.is_file() else None, request.tier, request.width, request.height, request.rate,
+            request.duration, has["stereo"], has["lidar"],
+        )  # fmt: skip
         with _whole(case) as part:
             make_sequence(tour / "tour.mcap", condition, part)
             shutil.rmtree(case, ignore_errors=True)
@@ -215,7 +239,7 @@ def _vocabulary(request: Request, methods: dict[str, Method], out: Path, say: Te
         say("making the vocabulary of ORB features")
         part = file.with_name(f".{VOCABULARY}")
         script = Path(__file__).with_name("adapters") / "vocabulary.py"
-        images = [str(case_of(out, scene, request.levels[0]) / "sequence" / "rgb") for scene in request.scenes]
+        images = [str(case_of(out, scene, request.level_names[0]) / "sequence" / "rgb") for scene in request.scenes]
         python = python_of(next(method.environment for method in users if method.environment))
         done = subprocess.run([str(python), str(script), str(part), *images], capture_output=True, text=True, check=False)
         if done.returncode != 0:

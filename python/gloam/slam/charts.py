@@ -8,16 +8,16 @@ from typing import Any
 import numpy as np
 
 import gloam
-from gloam.navigation.benchmark.charts import INK, PLANNER_COLORS, Chart
+from gloam.navigation.benchmark.charts import INK, LEVEL_COLORS, PLANNER_COLORS, Chart
 from gloam.navigation.benchmark.floor_plan import plan_of
 from gloam.navigation.benchmark.optional import require
 from gloam.navigation.grid import Grid
 
 from .adapters.contract import INITIALIZING, LOST, TRACKED
 from .benchmark import Key, case_of
-from .estimate import Estimate, Trajectory, read_estimate, read_tum
+from .estimate import Array, Estimate, Trajectory, read_estimate, read_tum
 from .methods import load_method
-from .sequence import TRUTH, TRUTH_LIDAR
+from .sequence import TRUTH, TRUTH_LIDAR, VISIBILITY
 
 STATE_COLORS = {INITIALIZING: "#c4c9d1", TRACKED: "#009e73", LOST: "#d55e00"}
 _WALL = "#e3e6ea"
@@ -40,6 +40,11 @@ def trajectory_chart(out: Path, scene: str, levels: tuple[str, ...], methods: tu
         handles += [lines.Line2D([], [], color=_color(k), label=name) for k, name in enumerate(methods)]
         chart.figure.legend(handles=handles, loc="outside upper left", ncols=min(len(handles), 4), frameon=False)
     return chart.svg
+
+
+def visibility(case: Path) -> Array:
+    """(n, 3): time [s], visibility [m] and extinction [1/m] at the camera."""
+    return np.loadtxt(case / VISIBILITY, delimiter=",", skiprows=1, ndmin=2)
 
 
 def _color(k: int) -> str:
@@ -91,10 +96,16 @@ def _estimate(out: Path, key: Key) -> Estimate | None:
 
 
 def tracking_chart(out: Path, scene: str, levels: tuple[str, ...], methods: tuple[str, ...]) -> str:
-    """SVG text: the state of every frame of the first run, a bar per method and level."""
+    """SVG text: the extinction at the camera, and the state of every frame of the first run, a bar per level and method."""
     rows = [(load_method(name).name, level) for level in levels for name in methods]
-    with Chart(9.0, 0.6 + 0.22 * len(rows), f"tracking {scene}") as chart:
-        axis = chart.figure.subplots()
+    height = 0.22 * len(rows)
+    with Chart(9.0, 2.2 + height, f"tracking {scene}") as chart:
+        above, axis = chart.figure.subplots(2, 1, sharex=True, height_ratios=[1.4, max(height, 0.5)])
+        for level in levels:
+            time, _, extinction = visibility(case_of(out, scene, level)).T
+            above.plot(time, extinction, label=level, color=LEVEL_COLORS[levels.index(level) % len(LEVEL_COLORS)])
+        above.set_ylabel("extinction [1/m]")
+        above.legend(frameon=False)
         for y, (name, level) in enumerate(rows):
             estimate = _estimate(out, Key(name, scene, level, 0))
             frames = () if estimate is None else estimate.frames

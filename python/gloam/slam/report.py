@@ -12,10 +12,11 @@ from typing import Any
 from gloam.navigation.benchmark import words
 from gloam.navigation.benchmark.files import replace_file
 from gloam.navigation.benchmark.optional import require
+from gloam.navigation.benchmark.visibility import KOSCHMIEDER
 
 from . import paper
-from .benchmark import REQUEST, Key
-from .charts import tracking_chart, trajectory_chart
+from .benchmark import REQUEST, Key, case_of
+from .charts import tracking_chart, trajectory_chart, visibility
 from .methods import load_method
 from .summary import MEASURES, Cell, summarize
 
@@ -71,12 +72,20 @@ def render_page(out: Path, request: Row, cells: list[Cell]) -> str:
         request=request,
         cells=cells,
         failed=[cell for cell in cells if cell.failures],
+        visibility={(cell.scene, cell.level): _visibility(out, cell) for cell in cells},
         trajectories={scene: _image(trajectory_chart(out, scene, shown[scene], methods)) for scene in scenes},
         tracking={scene: _image(tracking_chart(out, scene, shown[scene], methods)) for scene in scenes},
         paper=paper,
         comparison=_comparison(cells),
     )
     return text
+
+
+def _visibility(out: Path, cell: Cell) -> str:
+    """Mean, by the mean extinction, and least visibility along the tour; the probe ends at 100 km."""
+    _, along, extinction = visibility(case_of(out, cell.scene, cell.level)).T
+    mean, least = KOSCHMIEDER / extinction.mean(), along.min()
+    return "clear" if least > 1e4 else f"{words.number(mean, 1)}, {words.number(least, 1)}"
 
 
 def _comparison(cells: list[Cell]) -> list[tuple[str, str, list[paper.PaperRow], list[Cell]]]:

@@ -14,12 +14,13 @@ from typing import Any
 import numpy as np
 
 import gloam
+from gloam.navigation.benchmark.visibility import KOSCHMIEDER, PROBE
 
 from .adapters.contract import CALIBRATION, Camera, Imu
 from .estimate import Array
 from .tour import BASELINE, BEGIN, IMU_RATE, IMU_TOPIC, LEFT, LIDAR, RIGHT, ROBOT
 
-TRUTH, TRUTH_LIDAR = "truth.tum", "truth_lidar.tum"
+TRUTH, TRUTH_LIDAR, VISIBILITY = "truth.tum", "truth_lidar.tum", "visibility.csv"
 _CLUTTER = 0.5  # of all generated places, by default
 _DEPTH_SCALE = 1000.0  # of Gloam's depth images per metre
 # Of a BMI088 [rad/s/√Hz, rad/s²/√Hz, m/s²/√Hz, m/s³/√Hz]; its data sheet gives no random walks, those are usual values.
@@ -28,10 +29,11 @@ _IMU_NOISE = (2.44e-4, 2e-5, 1.72e-3, 2e-4)
 
 @dataclass(frozen=True)
 class Condition:
-    """level: of adversity, or dark; tier, width, height, rate [Hz]: of the images; duration: of the replay [s], None = the
-    whole tour; has_stereo, has_lidar: whether these are recorded."""
+    """level: of adversity, or dark; overlay: scene file that is applied instead, or None; tier, width, height, rate [Hz]: of the
+    images; duration: of the replay [s], None = the whole tour; has_stereo, has_lidar: whether these are recorded."""
 
     level: str = "none"
+    overlay: Path | None = None
     tier: str = "interactive"
     width: int = 640
     height: int = 480
@@ -43,20 +45,21 @@ class Condition:
 
 def make_sequence(log: Path, condition: Condition, folder: Path, progress: Any = None) -> None:
     """Writes the sequence of a tour into the new folder FOLDER/sequence, and the truth beside it: truth.tum has the poses of the
-    left camera (optical frame), truth_lidar.tum the poses of the LiDAR at the end of each scan.
+    left camera (optical frame), truth_lidar.tum the poses of the LiDAR at the end of each scan, visibility.csv the visibility
+    at the camera.
 
     The robot moves as in the log under every condition. Errors: as gloam.Log.replay; OSError.
     """
     work = folder / "replay"
-    outputs = ["png", "depth_png", *(["lidar"] if condition.has_lidar else [])]
+    outputs = ["png", "depth_png", "sensors", *(["lidar"] if condition.has_lidar else [])]
     cameras = [LEFT, *([RIGHT] if condition.has_stereo else [])]
     request: dict[str, Any] = {"width": condition.width, "height": condition.height, "rate": condition.rate, "cameras": cameras}
     if condition.duration is not None:
         request["duration"] = BEGIN + condition.duration
     recorded = gloam.replay(log)
-    recorded.replay(
-        work, {"render.tier": condition.tier, **_settings(condition.level)}, motion="poses", outputs=outputs, progress=progress, **request
-    )
+    settings = {"render.tier": condition.tier, **({} if condition.overlay else _settings(condition.level))}
+    overlays = [condition.overlay] if condition.overlay else []
+    recorded.replay(work, settings, motion="poses", overlays=overlays, outputs=outputs, progress=progress, **request)
     try:
         _write(recorded, work, condition, folder)
     finally:
@@ -96,6 +99,7 @@ def _write(log: gloam.Log, work: Path, condition: Condition, folder: Path) -> No
             packed.tofile(sequence / "scans" / f"{row['scan']:06.0f}.bin")
         _write_index(sequence / "scans.txt", [(row["end_s"], f"scans/{row['scan']:06.0f}.bin") for row in scans])
         _write_truth(folder / TRUTH_LIDAR, np.array([row["end_s"] for row in scans]), _poses(scans, "end_"))
+    _write_visibility(work / "sensors" / f"{PROBE}.csv", folder / VISIBILITY)
     # 3. Inertial measurements, which the log has, and the calibration.
     _write_imu(log, sequence / "imu.csv")
     (sequence / CALIBRATION).write_text(json.dumps(_calibration(log, work, condition), indent=1) + "\n", encoding="utf-8")
@@ -147,6 +151,19 @@ def _write_index(file: Path, rows: Rows[tuple[float, str]]) -> None:
     # Programs for TUM's benchmark, such as those of ORB-SLAM2, skip three lines.
     head = f"# {file.stem}\n# of a sequence of Gloam\n# time [s], file\n"
     file.write_text(head + "".join(f"{stamp:.9f} {name}\n" for stamp, name in rows), encoding="utf-8")
+
+
+def _write_visibility(source: Path, file: Path) -> None:
+    """Time [s], visibility [m] and extinction [1/m] at 550 nm of each sample of the probe, which methods do not see."""
+    with source.open(encoding="utf-8", newline="") as stream, file.open("w", encoding="utf-8", newline="") as out:
+        rows = csv.writer(out, lineterminator="\n")
+        rows.writerow(["time_s", "visibility_m", "extinction_1_m"])
+        reader = csv.reader(stream)
+        names = next(reader)
+        time, value = names.index("time_s"), next(k for k, name in enumerate(names) if name.startswith("visibility"))
+        for row in reader:
+            if float(row[time]) >= BEGIN - 1e-9:
+                rows.writerow([row[time], row[value], f"{KOSCHMIEDER / float(row[value]):.6g}"])
 
 
 def _write_imu(log: gloam.Log, file: Path) -> None:

@@ -10,7 +10,8 @@ from typing import Any
 import numpy as np
 
 import gloam
-from gloam.navigation.benchmark.places import PLACES, Course
+from gloam.navigation.benchmark.places import EYE, PLACES, Course
+from gloam.navigation.benchmark.visibility import visibility_probe
 from gloam.navigation.driver import Driver, Rig
 from gloam.navigation.planner import Task
 from gloam.navigation.planners.geometric import Route
@@ -66,7 +67,10 @@ def tour_scene(place: str) -> gloam.Scene:
         "environment": PLACES[place],
         "robot": [robot],
         "stereo": [{"name": EYES, "body": f"{ROBOT}/front_stereo_mount", "baseline": BASELINE, **camera}],
-        "lidar": [{"name": LIDAR, "body": f"{ROBOT}/lidar_mount", "preset": "VLP-16", "rate": 10, "motion_keys": 1, "outputs": ["npy"]}],
+        "probe": [visibility_probe(f"{ROBOT}/trunk", EYE)],
+        "lidar": [
+            {"name": LIDAR, "body": f"{ROBOT}/lidar_mount", "preset": "VLP-16", "rate": 10, "motion_keys": 1, "noise": True, "outputs": ["npy"]}
+        ],
         "sensor": [
             {"match": f"{ROBOT}/imu_gyro", "preset": "bmi088_gyro", "rate": IMU_RATE},
             {"match": f"{ROBOT}/imu_accelerometer", "preset": "bmi088_accel", "rate": IMU_RATE},

@@ -7,7 +7,7 @@ from typing import Any
 import gloam
 
 PROBE = "visibility"
-_KOSCHMIEDER = 3.912  # visibility times extinction: contrast of 2 % (docs/metrics.md)
+KOSCHMIEDER = 3.912  # visibility times extinction: contrast of 2 % (docs/metrics.md)
 
 
 def visibility_probe(body: str, position: tuple[float, float, float], rate: float = 2.0) -> dict[str, Any]:
@@ -25,16 +25,16 @@ class VisibilityMeter:
 
     def sample(self) -> None:
         """Takes the values since the last call."""
-        self._extinctions += [_KOSCHMIEDER / float(sample.values[0]) for sample in self._probe.waiting()]
+        self._extinctions += [KOSCHMIEDER / float(sample.values[0]) for sample in self._probe.waiting()]
 
     def mean(self) -> float | None:
         """The visibility of the mean extinction, as in docs/metrics.md; None without a sample."""
         extinctions = self._extinctions
-        return _KOSCHMIEDER * len(extinctions) / sum(extinctions) if extinctions else None
+        return KOSCHMIEDER * len(extinctions) / sum(extinctions) if extinctions else None
 
     def least(self) -> float | None:
         """The least visibility; None without a sample."""
-        return _KOSCHMIEDER / max(self._extinctions) if self._extinctions else None
+        return KOSCHMIEDER / max(self._extinctions) if self._extinctions else None
 
     def close(self) -> None:
         """Closes the probe's stream."""
