@@ -13,7 +13,7 @@ import fetch_data
 from e2e.support import PENDULUM, PROGRAM, ROOT, ProgramTest, video_frames
 
 COMMANDS = ["demo", "run", "render", "info", "export", "evaluate", "report", "check", "cache", "schema", "completion"]
-SCRIPT_COMMANDS = re.findall(r"^  (\w+)\)$", (ROOT / "gloam").read_text(), re.M)
+SCRIPT_COMMANDS = [name for names in re.findall(r"^  (\w+(?: \| \w+)*)\)", (ROOT / "gloam").read_text(), re.M) for name in names.split(" | ")]
 
 
 class Help(ProgramTest):
