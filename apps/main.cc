@@ -34,8 +34,7 @@ int run_program(int argc, char** argv) {
   CLI::App app{
       "Gloam: a robotics simulator with unmodified MuJoCo physics and path-traced sensors.\nAlso "
       "in the source tree: ./gloam setup | test | bench | navigate | map | slam | mitsuba | "
-      "gallery "
-      "| docs | pack | python | wheel | doctor"};
+      "gallery | docs | pack | python | wheel | doctor"};
   app.name("gloam");
   app.require_subcommand(1);
   app.fallthrough();

@@ -131,15 +131,11 @@ def _add_vocabulary(commands: argparse._SubParsersAction[argparse.ArgumentParser
 
 
 def _vocabulary(given: argparse.Namespace) -> int:
-    import gloam
     from gloam.slam import adapters
-    from gloam.slam.methods import python_of
+    from gloam.slam.methods import opencv_python
 
-    python = next((python for python in map(python_of, ("orb_slam3", "opencv")) if python.is_file()), None)
-    if python is None:
-        raise gloam.UsageError("a vocabulary needs OpenCV", hint="./gloam slam install opencv")
     script = Path(adapters.__path__[0]) / "vocabulary.py"
-    return subprocess.run([str(python), str(script), given.out, *given.folders], check=False).returncode
+    return subprocess.run([str(opencv_python()), str(script), given.out, *given.folders], check=False).returncode
 
 
 def _methods(_: argparse.Namespace) -> int:

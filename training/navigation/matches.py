@@ -1,7 +1,7 @@
 """Parts of two images that show the same surface, from depth images and the poses of the cameras.
 
 Gloam renders depth with every image, so the training knows the correspondences which networks for real images have to
-find by themselves. Cells are those of the network's feature maps: cell (r, c) lies around the pixel (8 r, 8 c).
+find by themselves. A cell (r, c) of the network's feature maps lies around the pixel (8 r, 8 c).
 """
 
 from __future__ import annotations

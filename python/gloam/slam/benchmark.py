@@ -7,7 +7,6 @@ that gets its name when it is complete: a repeated call continues after any inte
 from __future__ import annotations
 
 import json
-import re
 import shutil
 import subprocess
 import time
@@ -19,6 +18,8 @@ from dataclasses import asdict, dataclass, fields
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 import gloam
 from gloam._distribute.manifest import publish, write_json
 from gloam.navigation.benchmark.files import locked
@@ -26,9 +27,10 @@ from gloam.navigation.benchmark.places import ALL_LEVELS, LEVELS, PLACES
 from gloam.navigation.benchmark.request import machine_name
 from gloam.navigation.benchmark.words import duration
 
-from .methods import Method, load_method, python_of
+from .estimate import read_tum
+from .methods import Method, load_method, opencv_python
 from .run import run_method
-from .sequence import Condition, make_sequence
+from .sequence import TRUTH, Condition, make_sequence
 from .tour import Tour, record_tour
 
 REQUEST, OUTCOME, VOCABULARY, OVERLAYS = "request.json", "outcome.json", "vocabulary.txt", "overlays"
@@ -240,8 +242,7 @@ def _vocabulary(request: Request, methods: dict[str, Method], out: Path, say: Te
         part = file.with_name(f".{VOCABULARY}")
         script = Path(__file__).with_name("adapters") / "vocabulary.py"
         images = [str(case_of(out, scene, request.level_names[0]) / "sequence" / "rgb") for scene in request.scenes]
-        python = python_of(next(method.environment for method in users if method.environment))
-        done = subprocess.run([str(python), str(script), str(part), *images], capture_output=True, text=True, check=False)
+        done = subprocess.run([str(opencv_python()), str(script), str(part), *images], capture_output=True, text=True, check=False)
         if done.returncode != 0:
             raise gloam.Error(f"the vocabulary cannot be made: {(done.stderr.strip().splitlines() or ['no output'])[-1]}")
         part.replace(file)
@@ -250,13 +251,9 @@ def _vocabulary(request: Request, methods: dict[str, Method], out: Path, say: Te
 
 def _run(method: Method, key: Key, request: Request, vocabulary: str, out: Path) -> str:
     case = case_of(out, key.scene, key.level).resolve()
-    stamps = re.findall(r"^[\d.]+", (case / "truth.tum").read_text(encoding="utf-8"), re.MULTILINE)
-    limit = 60.0 + request.limit * (float(stamps[-1]) - float(stamps[0]))
+    limit = 60.0 + request.limit * float(np.ptp(read_tum(case / TRUTH).times))
     with _whole((out / "runs" / key.path).resolve()) as part:
         values = {"seed": str(request.seed * 1000 + key.number), "vocabulary": vocabulary}
-        outcome = run_method(method, case, part / "files", values, limit)
-        for file in (part / "files").iterdir():
-            shutil.move(file, part / file.name)
-        (part / "files").rmdir()
+        outcome = run_method(method, case, part, values, limit)
         write_json(part / OUTCOME, outcome.as_dict())
     return outcome.state

@@ -38,7 +38,7 @@ class Method:
 
     @property
     def has_lidar(self) -> bool:
-        """Whether its poses are those of the LiDAR."""
+        """Whether it estimates poses of the LiDAR."""
         return self.sensors == "lidar"
 
     def words(self, values: Mapping[str, str]) -> list[str]:
@@ -98,6 +98,14 @@ def python_of(environment: str) -> Path:
     """The Python of an environment that `gloam slam install` has made. GLOAM_SLAM_ENVIRONMENTS names another folder of them."""
     folder = os.environ.get("GLOAM_SLAM_ENVIRONMENTS") or gloam.home() / ".venv"
     return Path(folder) / f"slam-{environment}" / "bin" / "python"
+
+
+def opencv_python() -> Path:
+    """The Python of an environment that has OpenCV. Errors: UsageError if none is installed."""
+    for name in ("orb_slam3", "opencv"):
+        if (python := python_of(name)).is_file():
+            return python
+    raise gloam.UsageError("a vocabulary needs OpenCV", hint="./gloam slam install opencv")
 
 
 def load_method(name: str) -> Method:

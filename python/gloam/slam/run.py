@@ -40,12 +40,12 @@ class Outcome:
 
 
 def run_method(method: Method, case: Path, out: Path, values: dict[str, str], limit: float) -> Outcome:
-    """Runs a method on the sequence of CASE (sequence.make_sequence), with its files and log.txt in the new folder `out`.
+    """Runs a method on the sequence of CASE (sequence.make_sequence), with its files and log.txt in `out`, a new or empty folder.
 
     values: for its command, beside sequence, out and truth; limit: after which it is stopped [s]. Errors: UsageError if it
     cannot start; OSError. A method that fails is an outcome.
     """
-    out.mkdir(parents=True)
+    out.mkdir(parents=True, exist_ok=True)
     truth = case / (TRUTH_LIDAR if method.has_lidar else TRUTH)
     words = method.words({**values, "sequence": str(case / "sequence"), "out": str(out), "truth": str(truth)})
     begin = time.monotonic()

@@ -14,11 +14,12 @@ from typing import Any
 import numpy as np
 
 import gloam
+from gloam.navigation.benchmark.places import LIDAR, ROBOT
 from gloam.navigation.benchmark.visibility import KOSCHMIEDER, PROBE
 
 from .adapters.contract import CALIBRATION, Camera, Imu
 from .estimate import Array
-from .tour import BASELINE, BEGIN, IMU_RATE, IMU_TOPIC, LEFT, LIDAR, RIGHT, ROBOT
+from .tour import BASELINE, BEGIN, IMU_RATE, IMU_TOPIC, LEFT, RIGHT
 
 TRUTH, TRUTH_LIDAR, VISIBILITY = "truth.tum", "truth_lidar.tum", "visibility.csv"
 _CLUTTER = 0.5  # of all generated places, by default
@@ -148,7 +149,7 @@ def _write_truth(file: Path, times: Array, poses: Array) -> None:
 
 
 def _write_index(file: Path, rows: Rows[tuple[float, str]]) -> None:
-    # Programs for TUM's benchmark, such as those of ORB-SLAM2, skip three lines.
+    # Programs for TUM's benchmark, such as ORB-SLAM2's, skip three lines.
     head = f"# {file.stem}\n# of a sequence of Gloam\n# time [s], file\n"
     file.write_text(head + "".join(f"{stamp:.9f} {name}\n" for stamp, name in rows), encoding="utf-8")
 

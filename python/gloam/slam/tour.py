@@ -10,13 +10,13 @@ from typing import Any
 import numpy as np
 
 import gloam
-from gloam.navigation.benchmark.places import EYE, PLACES, Course
+from gloam.navigation.benchmark.places import EYE, LIDAR, PLACES, ROBOT, Course, quadruped
 from gloam.navigation.benchmark.visibility import visibility_probe
 from gloam.navigation.driver import Driver, Rig
 from gloam.navigation.planner import Task
 from gloam.navigation.planners.geometric import Route
 
-ROBOT, EYES, LIDAR = "go", "eyes", "lidar"
+EYES = "eyes"
 LEFT, RIGHT = f"{EYES}/left", f"{EYES}/right"
 BEGIN = 1.0  # of the tour: until then the robot comes to rest on its feet [s]
 TOPICS = ("/clock", "/tf*", f"/{ROBOT}/imu/*")
@@ -27,7 +27,6 @@ REACH = {"tunnel": (30.0, 45.0)}  # length of a path [m]; elsewhere 4 to 12 m, w
 _SPEED = 0.4  # [m/s]
 _REACH = 0.4  # of a goal [m]
 _STAND = 0.3  # the trunk's height above the ground at the start [m]
-_DATA = Path("assets")
 
 
 @dataclass(frozen=True)
@@ -42,21 +41,12 @@ class Tour:
 
 
 def tour_scene(place: str) -> gloam.Scene:
-    """A place in clear air with the quadruped, its walking policy, a stereo camera in its face with the errors of a depth camera
-    for the left one, a LiDAR and an IMU. Errors: NotFoundError for an unknown place."""
+    """A place in clear air with the quadruped, its walking policy, a stereo camera in its face, a LiDAR and an IMU.
+
+    Errors: NotFoundError for an unknown place.
+    """
     if place not in PLACES:
         raise gloam.NotFoundError(f"there is no scene '{place}'; there are: {', '.join(PLACES)}")
-    assets = gloam.home() / _DATA
-    robot = {
-        "name": ROBOT,
-        "file": str(assets / "robots/quadruped/quadruped.xml"),
-        "keyframe": "home",
-        "controller": {
-            "type": "policy",
-            "network": str(assets / "policies/quadruped/policy.onnx"),
-            "settings": str(assets / "policies/quadruped/policy.toml"),
-        },
-    }
     # The mean counts bright windows with all their light, where a camera's meter saturates.
     exposure = {"time_constant": 0.3, "metering": "average", "compensation": 2.0, "max_shutter": 0.02, "max_iso": 6400}
     pixel = {"full_well": 10500, "quantum_efficiency": 0.62, "pitch": 3.45, "shot_noise": True, "read_noise": 2.4, "bits": 10}
@@ -67,7 +57,7 @@ def tour_scene(place: str) -> gloam.Scene:
     tables: dict[str, Any] = {
         "scene": {"name": place},
         "environment": PLACES[place],
-        "robot": [robot],
+        "robot": [quadruped()],
         "stereo": [{"name": EYES, "body": f"{ROBOT}/front_stereo_mount", "baseline": BASELINE, **camera}],
         "probe": [visibility_probe(f"{ROBOT}/trunk", EYE)],
         "lidar": [

@@ -11,7 +11,7 @@ namespace gloam {
 
 bool Stepper::follow(std::unique_ptr<Motion> motion) {
   motion_ = std::move(motion);
-  // What moves bodies of its own would undo the motion, if that has their poses already.
+  // An effect that moves people would undo a motion that has their poses already.
   if (motion_->moves_agents())
     std::erase_if(effects_, [](const auto& effect) { return effect->moves_bodies(); });
   if (const Status moved = motion_->advance(0, data_.get()); !moved.ok())

@@ -39,13 +39,10 @@ PLACES: dict[str, dict[str, Any]] = {
 }
 
 
-def scene_of(place: str, level: str) -> gloam.Scene:
-    """The scene of a place at a level of adversity, with the quadruped and its walking policy. Errors: NotFoundError."""
-    for name, names, kind in ((place, PLACES, "scene"), (level, ALL_LEVELS, "level")):
-        if name not in names:
-            raise gloam.NotFoundError(f"there is no {kind} '{name}'; there are: {', '.join(names)}")
+def quadruped() -> dict[str, Any]:
+    """The [[robot]] table of the quadruped with its walking policy."""
     assets = gloam.home() / "assets"
-    robot = {
+    return {
         "name": ROBOT,
         "file": str(assets / "robots/quadruped/quadruped.xml"),
         "keyframe": "home",
@@ -55,10 +52,17 @@ def scene_of(place: str, level: str) -> gloam.Scene:
             "settings": str(assets / "policies/quadruped/policy.toml"),
         },
     }
+
+
+def scene_of(place: str, level: str) -> gloam.Scene:
+    """The scene of a place at a level of adversity, with the quadruped and its walking policy. Errors: NotFoundError."""
+    for name, names, kind in ((place, PLACES, "scene"), (level, ALL_LEVELS, "level")):
+        if name not in names:
+            raise gloam.NotFoundError(f"there is no {kind} '{name}'; there are: {', '.join(names)}")
     tables: dict[str, Any] = {
         "scene": {"name": place},
         "environment": PLACES[place],
-        "robot": [robot],
+        "robot": [quadruped()],
         "probe": [visibility_probe(f"{ROBOT}/trunk", EYE)],
         "lidar": [{"name": LIDAR, "body": f"{ROBOT}/lidar_mount", "preset": "VLP-16", "rate": 10, "motion_keys": _MOTION_KEYS}],
     }

@@ -1,8 +1,8 @@
 """Visual odometry with OpenCV: odometry.py SEQUENCE OUT --sensors mono|rgbd|stereo. Requires OpenCV.
 
 ORB features (Rublee et al. 2011) of each frame are matched to the features of a keyframe, whose points give its pose (P3P in
-RANSAC, then least squares). With depth or a right image, points come from one frame; with one camera, from two frames
-whose relative pose is that of the essential matrix (Nistér 2004), so the unit of length is the first baseline. There is
+RANSAC, then least squares). With depth or a right image, points come from one frame; with one camera, from two frames,
+whose relative pose the essential matrix gives (Nistér 2004), so the unit of length is the first baseline. There is
 neither a loop closure nor an optimisation over several frames: this is the least that a SLAM method must beat.
 """
 
