@@ -178,6 +178,47 @@ TEST(Temporal, ALampDoesNotChangeTheWallBesideIt) {
   EXPECT_NEAR(floor.shown[floor.picture.index(4, 8)].x, 10, 1);
 }
 
+TEST(Temporal, BordersKeepTheLightThatDenoisersLoseThere) {
+  Floor floor;
+  floor.denoised.assign(kPixels, {9, 9, 9});
+  for (size_t i = 0; i < kPixels; ++i) {
+    const size_t x = i % kWidth;
+    floor.part[i] = x < 12 ? 1 : 2;
+    if (x == 11 || x == 12) floor.denoised[i] = {4, 4, 4};
+  }
+  for (int i = 0; i < 40; ++i) floor.take({10, 10, 10}, 0.5f);
+  floor.restore();
+  for (const int x : {3, 11, 12, 20})
+    EXPECT_NEAR(floor.shown[floor.picture.index(x, 8)].x, 10, 1.5) << x;
+}
+
+TEST(Temporal, BordersThatMoveTakeTheLightOfTheirObject) {
+  Floor floor;
+  // The border between a dark and a bright object moves by a pixel each time, so that its pixels
+  // have no history; their light is noise.
+  for (int k = 0; k < 12; ++k) {
+    const auto border = static_cast<size_t>(5 + k);
+    for (size_t i = 0; i < kPixels; ++i) {
+      const bool dark = i % kWidth < border;
+      floor.part[i] = dark ? 1 : 2;
+      floor.albedo[i] = dark ? Vec3f{0.1f, 0.1f, 0.1f} : Vec3f{0.8f, 0.8f, 0.8f};
+    }
+    for (size_t i = 0; i < kPixels; ++i) {
+      const double u = floor.random.uniform(static_cast<uint64_t>(k), static_cast<uint32_t>(i));
+      floor.radiance[i] = floor.albedo[i] * (u < 0.5 ? 200.0f : 0.0f);
+    }
+    floor.join();
+  }
+  floor.restore();
+  double squares = 0;
+  for (int y = 0; y < kHeight; ++y) {
+    const float dark = floor.color[floor.picture.index(15, y)].x / 10 - 1;
+    const float bright = floor.color[floor.picture.index(16, y)].x / 80 - 1;
+    squares += dark * dark + bright * bright;
+  }
+  EXPECT_LT(std::sqrt(squares / (2 * kHeight)), 0.4);  // single pixels: 1
+}
+
 TEST(Temporal, PixelsOfTwoObjectsKeepTheirLight) {
   Floor floor;
   // A dark object before a bright one: the pixels at its border show both.

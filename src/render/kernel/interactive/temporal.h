@@ -21,10 +21,14 @@ struct TemporalPlanes {
   Vec3f* normal = nullptr;    ///< exact channel center_normal
 };
 
-/// Sums over a block of pixels, in units of its brightest one.
-struct BlockLight {
+/// Sums over pixels, in units of the brightest one of their block.
+struct PixelSums {
   Vec3f noisy, shown;
-  float unit = 0;  ///< one over the brightest pixel
+  float pixels = 0, unit = 0;  ///< unit: one over the brightest pixel, for each pixel
+};
+/// Sums over a block of pixels. Denoisers lose other shares of the light at borders than inside.
+struct BlockLight {
+  PixelSums inside, border;
 };
 
 /// One picture that joins a history; pointers are those of the side that runs the code.
@@ -95,15 +99,20 @@ GLOAM_HD bool is_mixed(uint32_t part) { return (part & kBorder) != 0 && part != 
 /// Whether pixels of this value show no surface.
 GLOAM_HD bool is_empty(uint32_t part) { return is_sky(part) || part == kMediaPart; }
 
+/// Colour of a pixel's surface, never black.
+GLOAM_HD Vec3f reflected_color(const TemporalPicture& p, size_t i) {
+  const Vec3f albedo = p.albedo[i];
+  return {max(albedo.x, kLeastColor), max(albedo.y, kLeastColor), max(albedo.z, kLeastColor)};
+}
+
 /// Colour that the light of a pixel is divided by: never black. White where light is not reflected
 /// (sky, media), and where two objects share a pixel. It must not jump within a surface, whose
 /// pixels exchange their quotients.
 GLOAM_HD Vec3f divisor(const TemporalPicture& p, size_t i) {
-  const Vec3f albedo = p.albedo[i], white{1, 1, 1};
+  const Vec3f white{1, 1, 1};
   const uint32_t part = p.now.part[i];
   if (is_empty(part) || is_mixed(part)) return white;
-  const Vec3f color{max(albedo.x, kLeastColor), max(albedo.y, kLeastColor),
-                    max(albedo.z, kLeastColor)};
+  const Vec3f color = reflected_color(p, i);
   return p.clear == nullptr ? color : lerp(white, color, p.clear[i]);
 }
 

@@ -79,10 +79,32 @@ GLOAM_HD Vec3f shown_light(const TemporalPicture& p, int x, int y) {
   return sum / total;
 }
 
+/// Colour of a pixel that shows two objects as its own object around has it: pixels at borders lose
+/// their history whenever the camera moves, and a denoiser alone leaves them dark or bright. A
+/// quotient of sums, as the colours of such pixels may be far from their light.
+GLOAM_HD Vec3f border_color(const TemporalPicture& p, int x, int y) {
+  constexpr int kRadius = 3;  // [px]
+  const size_t i = p.index(x, y);
+  Vec3f light, colors;
+  for (int b = max(y - kRadius, 0); b <= min(y + kRadius, p.height - 1); ++b) {
+    for (int a = max(x - kRadius, 0); a <= min(x + kRadius, p.width - 1); ++a) {
+      const size_t j = p.index(a, b);
+      if (p.part[j] != p.part[i]) continue;
+      light += p.now.light[j] * divisor(p, j);
+      colors += reflected_color(p, j);
+    }
+  }
+  const Vec3f own = reflected_color(p, i);
+  return {own.x * light.x / colors.x, own.y * light.y / colors.y, own.z * light.z / colors.z};
+}
+
 /// Makes the pixel's colour, before restore().
 GLOAM_HD void compose(const TemporalPicture& p, int x, int y) {
   const size_t i = p.index(x, y);
-  p.color[i] = shown_light(p, x, y) * divisor(p, i);
+  const Vec3f color = shown_light(p, x, y) * divisor(p, i);
+  const float known = min(p.now.age[i] / kSettledAge, 1);
+  const bool unsure = is_mixed(p.now.part[i]) && known < 1;
+  p.color[i] = unsure ? lerp(border_color(p, x, y), color, known) : color;
 }
 
 }  // namespace gloam::temporal

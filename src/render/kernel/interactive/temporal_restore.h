@@ -3,7 +3,7 @@
 // rare bright samples. Device-safe.
 
 #include "render/kernel/film/light_gain.h"
-#include "render/kernel/interactive/temporal.h"
+#include "render/kernel/interactive/temporal_light.h"
 
 namespace gloam::temporal {
 
@@ -26,11 +26,27 @@ inline constexpr int kDetailRadius = 1;  ///< of the window [px]
 /// no deviation of its own, so it must have lost its weight.
 inline constexpr float kLeastDetailAge = 40;
 
+/// Colour of a pixel that shows two objects, of the colours around: what a filter of the camera
+/// does with finished pictures.
+GLOAM_HD Vec3f blended(const TemporalPicture& p, int x, int y) {
+  Vec3f sum;
+  float total = 0;
+  for (int b = max(y - 1, 0); b <= min(y + 1, p.height - 1); ++b) {
+    for (int a = max(x - 1, 0); a <= min(x + 1, p.width - 1); ++a) {
+      const float weight = (a == x ? 2.0f : 1.0f) * (b == y ? 2.0f : 1.0f);
+      sum += p.color[p.index(a, b)] * weight;
+      total += weight;
+    }
+  }
+  return sum / total;
+}
+
 /// Makes the shown light of composed light: adds details of which the noisy light is certain, away
 /// from borders, whose pixels differ from picture to picture. After compose() of all pixels.
 GLOAM_HD void add_details(const TemporalPicture& p, int x, int y) {
   const size_t i = p.index(x, y);
   p.shown[i] = p.color[i];
+  if (is_mixed(p.now.part[i]) && p.now.age[i] < kSettledAge) p.shown[i] = blended(p, x, y);
   Vec3f noisy, composed;
   float variance = 0;
   for (int b = max(y - kDetailRadius, 0); b <= min(y + kDetailRadius, p.height - 1); ++b) {
@@ -50,29 +66,38 @@ GLOAM_HD void add_details(const TemporalPicture& p, int x, int y) {
   p.shown[i] = {p.color[i].x * gain.x, p.color[i].y * gain.y, p.color[i].z * gain.z};
 }
 
+GLOAM_HD void add_sums(PixelSums* sums, const PixelSums& other, float weight) {
+  sums->noisy += other.noisy * weight;
+  sums->shown += other.shown * weight;
+  sums->pixels += other.pixels * weight;
+  sums->unit += other.unit * weight;
+}
+
 /// Sums the block's noisy and shown light, in units of its brightest pixel: a bright window does
 /// not decide for the wall beside it. After add_details() of all pixels.
 GLOAM_HD void sum_block(const TemporalPicture& p, int column, int row) {
   float brightest = 1e-9f;
   each_of_block(p, column, row, 2,
                 [&](size_t i) { brightest = max(brightest, luminance(p.shown[i])); });
-  BlockLight sum;
+  BlockLight block;
   each_of_block(p, column, row, 0, [&](size_t i) {
-    sum.noisy += p.now.noisy[i];
-    sum.shown += p.shown[i];
+    const PixelSums pixel{p.now.noisy[i] / brightest, p.shown[i] / brightest, 1, 1 / brightest};
+    add_sums(is_mixed(p.now.part[i]) ? &block.border : &block.inside, pixel, 1);
   });
-  p.block(column, row) = {sum.noisy / brightest, sum.shown / brightest, 1 / brightest};
+  p.block(column, row) = block;
 }
 
-/// Scales the pixel's colour so that it keeps the noisy light of the blocks around. After
-/// sum_block() of all blocks.
+/// Scales the pixel's colour so that it keeps the noisy light of like pixels in the blocks around.
+/// After sum_block() of all blocks.
 GLOAM_HD void restore(const TemporalPicture& p, int x, int y) {
   constexpr int kBlock = TemporalPicture::kBlock;
-  constexpr float kReach = 4.5f;  // [blocks]
+  constexpr float kReach = 4.5f;     // [blocks]
+  constexpr float kUnlike = 0.002f;  // weight of other pixels, where few are like this one
   const float u = (static_cast<float>(x) + 0.5f) / kBlock - 0.5f,
               v = (static_cast<float>(y) + 0.5f) / kBlock - 0.5f;
-  BlockLight sum;
-  float total = 0;
+  const size_t i = p.index(x, y);
+  const bool mixed = is_mixed(p.now.part[i]);
+  PixelSums sums;
   const auto first = [](float at) { return max(static_cast<int>(ceilf(at - kReach)), 0); };
   const auto last = [](float at, int count) {
     return min(static_cast<int>(floorf(at + kReach)), count - 1);
@@ -82,16 +107,14 @@ GLOAM_HD void restore(const TemporalPicture& p, int x, int y) {
       const float weight = (kReach - fabsf(static_cast<float>(column) - u)) *
                            (kReach - fabsf(static_cast<float>(row) - v));
       const BlockLight& block = p.block(column, row);
-      sum.noisy += block.noisy * weight;
-      sum.shown += block.shown * weight;
-      sum.unit += block.unit * weight;
-      total += weight;
+      add_sums(&sums, mixed ? block.border : block.inside, weight);
+      add_sums(&sums, mixed ? block.inside : block.border, kUnlike * weight);
     }
   }
-  Vec3f& color = p.shown[p.index(x, y)];
-  const Vec3f gain = light_gain(sum.noisy, sum.shown, kMostWindowGain);
+  Vec3f& color = p.shown[i];
+  const Vec3f gain = light_gain(sums.noisy, sums.shown, kMostWindowGain);
   // Pixels far brighter than the blocks around show lamps or the sky, which have no noise.
-  const float share = min(total / (sum.unit * max(luminance(color), 1e-9f)), 1.0f);
+  const float share = min(sums.pixels / (sums.unit * max(luminance(color), 1e-9f)), 1.0f);
   color = {color.x * lerp(1, gain.x, share), color.y * lerp(1, gain.y, share),
            color.z * lerp(1, gain.z, share)};
 }
