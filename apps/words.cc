@@ -17,6 +17,7 @@ const std::vector<std::pair<std::string, std::string>> kScriptCommands = {
     {"navigate", "Run a scene with its planner"},
     {"map", "Make a topological map from a log"},
     {"slam", "Install SLAM methods, list them, make vocabularies"},
+    {"match", "Solve the camera and exposure of a photograph in a scene"},
     {"mitsuba", "Compare the path tier with Mitsuba 3"},
     {"gallery", "Render the images of docs/gallery"},
     {"docs", "Build the documentation site in build/site"},

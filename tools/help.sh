@@ -66,6 +66,7 @@ answer_help() {  # answer_help ARG…
       esac
       ;;
     slam) python_help "$root/tools/slam/commands.py" ${2:+"$2"} ;;
+    match) if [ "${2:-}" = pick ]; then python_help "$root/tools/match/commands.py" pick; else python_help "$root/tools/match/commands.py"; fi ;;
     map | navigate) python_help "$root/tools/navigation/commands.py" "$1" ;;
     pack) python_help "$root/tools/pack.py" ;;
     wheel) python_help "$root/tools/wheel.py" ;;
