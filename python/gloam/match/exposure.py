@@ -48,14 +48,13 @@ def fit_exposure(photo: Array, radiance: Array, usable: NDArray[np.bool_]) -> Ex
     if use.sum() < _FEWEST:
         raise InputError(f"only {int(use.sum())} blocks of the photograph are neither clipped, nor dark, nor masked; {_FEWEST} are needed")
     ratios = np.log2(photo[use] / radiance[use])
-    brightness = np.log2(photo[use] @ LUMINANCE) - np.log2(radiance[use] @ LUMINANCE)
-    gain = float(np.median(brightness))
-    channels = np.exp2(np.median(ratios, axis=0) - gain)
-    channels = channels / float(channels @ LUMINANCE)
+    middle = np.median(ratios, axis=0)
+    channels = np.exp2(middle)
+    whole = float(channels @ LUMINANCE)
     return Exposure(
-        ev100=-gain - math.log2(_TOP),
-        gains=(float(channels[0]), float(channels[1]), float(channels[2])),
-        spread=float(np.median(np.abs(brightness - gain))),
+        ev100=-math.log2(_TOP * whole),
+        gains=(float(channels[0] / whole), float(channels[1] / whole), float(channels[2] / whole)),
+        spread=float(np.median(np.abs(np.mean(ratios - middle, axis=1)))),
         share=float(use.mean()),
     )
 

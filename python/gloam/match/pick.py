@@ -30,6 +30,7 @@ from .view import Quality
 
 _LONGEST_PHOTO = 4096  # of the embedded photograph; a larger one is reduced, and its pixels still count in the original's [px]
 _MOST_VIEWS = 12
+_SCRIPTS = ("pick_pane.js", "pick.js")
 
 
 @dataclass(frozen=True)
@@ -63,10 +64,11 @@ def write_pick_page(
     }
     scale = min(1.0, _LONGEST_PHOTO / max(photo.width, photo.height))
     picture = photo.image if scale == 1 else photo.resized(round(photo.width * scale), round(photo.height * scale))
+    scripts = "".join(Path(__file__).with_name(name).read_text(encoding="utf-8") for name in _SCRIPTS)
     # "<" cannot end the script element.
     text = render_template(
         Path(__file__).with_name("pick.html"), title=f"{photo.path.name} in {scene.name}", photo=_jpeg(picture),
-        state=json.dumps(state).replace("<", "\\u003c"), script=Path(__file__).with_name("pick.js").read_text(encoding="utf-8"),
+        state=json.dumps(state).replace("<", "\\u003c"), script=scripts,
     )  # fmt: skip
     return replace_file(out, lambda path: path.write_text(text, encoding="utf-8"))
 

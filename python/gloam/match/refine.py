@@ -93,9 +93,14 @@ def refine(start: Camera, pixels: Array, points: Array, unknowns: Unknowns, robu
         projected, _ = camera_of(x).project(points)
         return np.asarray(np.clip(projected - pixels, -_BEHIND, _BEHIND).ravel())
 
+    def derivatives(x: Array) -> Array:
+        made = slopes(camera_of(x), points, unknowns)
+        made[:, :3] = made[:, :3] @ _turn_by_vector(x[:3])
+        return np.asarray(made * scale)
+
     first = np.array([0.0] * 6 + [getattr(start.lens, name) for name in unknowns.lens_names]) / scale
     kind = {"loss": "cauchy", "f_scale": robust} if robust else {}
-    done = least_squares(residuals, first, jac="3-point", xtol=1e-14, ftol=1e-14, gtol=1e-14, max_nfev=200, **kind)
+    done = least_squares(residuals, first, jac=derivatives, xtol=1e-14, ftol=1e-14, gtol=1e-14, max_nfev=200, **kind)
     camera = camera_of(done.x)
     projected, _ = camera.project(points)
     return Fit(camera, pixels - projected, slopes(camera, points, unknowns), float(done.cost))
@@ -105,6 +110,15 @@ def _moved(start: Camera, x: Array, unknowns: Unknowns) -> Camera:
     values: dict[str, Any] = dict(zip(unknowns.lens_names, map(float, x[6:]), strict=True))
     lens = replace(start.lens, **values)
     return Camera(lens, Rotation.from_rotvec(x[:3]).as_matrix() @ start.R, start.p + x[3:6])
+
+
+def _turn_by_vector(w: Array) -> Array:
+    """Turn about fixed axes by a change of a rotation vector (3, 3): the left Jacobian of SO(3)."""
+    angle = float(np.linalg.norm(w))
+    cross = np.array([[0, -w[2], w[1]], [w[2], 0, -w[0]], [-w[1], w[0], 0]])
+    if angle < 1e-4:
+        return np.asarray(np.eye(3) + cross / 2 + cross @ cross / 6)
+    return np.asarray(np.eye(3) + (1 - np.cos(angle)) / angle**2 * cross + (angle - np.sin(angle)) / angle**3 * cross @ cross)
 
 
 def slopes(camera: Camera, points: Array, unknowns: Unknowns) -> Array:
