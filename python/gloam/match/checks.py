@@ -24,7 +24,8 @@ def check_pairs(pixels: Array, points: Array, lens: Lens, unknowns: Unknowns) ->
     outside = (pixels < 0).any(axis=1) | (pixels[:, 0] > lens.width) | (pixels[:, 1] > lens.height)
     if outside.any():
         u, v = pixels[outside][0]
-        raise InputError(f"pair {int(np.argmax(outside)) + 1}: pixel ({u:g}, {v:g}) is outside the photograph of {lens.width} x {lens.height}")
+        where = f"pair {int(np.argmax(outside)) + 1}: pixel ({u:g}, {v:g})"
+        raise InputError(f"{where} is outside the photograph of {lens.width} x {lens.height}")
     distinct = min(len(np.unique(pixels, axis=0)), len(np.unique(points, axis=0)))
     if distinct < unknowns.fewest_pairs:
         same = "" if distinct == len(points) else f"; {len(points)} pairs are given, but some share a pixel or a point"
@@ -48,7 +49,8 @@ def check_fit(fit: Fit, points: Array, unknowns: Unknowns) -> None:
         raise InputError("the best camera has some of the scene points behind it", hint="check that pixels and points belong together")
     cofactor = fit.cofactor()
     flat = thickness(points)[-1] < _THIN
-    plane = "the scene points lie in one plane, which the camera faces" if flat else "the pairs hardly differ in depth or cover little of the image"
+    little = "the pairs hardly differ in depth or cover little of the image"
+    plane = "the scene points lie in one plane, which the camera faces" if flat else little
     if Unknowns.FOCAL in unknowns and not np.sqrt(cofactor[6, 6]) < _LOOSE * fit.camera.lens.f:
         raise InputError(f"the focal length is not determined: {plane}", hint="add pairs at other depths, or give --fovy")
     distance = float(np.median(depth))

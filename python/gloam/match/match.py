@@ -112,7 +112,14 @@ def _compare(
     photo: Photo, pairs: Sequence[Pair], points: Array, solution: Solution, scene: gloam.Scene, lit: bool, request: Request
 ) -> Match:  # fmt: skip
     size = request.quality.size_of(photo.width, photo.height)
-    frame = render(scene_with(scene, matched_table(request.name, solution, None)), request.name, size, _OUTPUTS, request.quality)
+    seen = scene_with(scene, matched_table(request.name, solution, None))
+    try:
+        frame = render(seen, request.name, size, _OUTPUTS, request.quality)
+    except gloam.InputError as error:
+        if solution.unknowns & (Unknowns.K1 | Unknowns.K2):
+            hint = "solve for less of the distortion, or add pairs near the corners of the photograph"
+            raise gloam.InputError(f"the solved lens cannot be rendered: {error.message}", hint=hint) from None
+        raise
     radiance = np.asarray(frame.radiance, dtype=np.float64)
     exposure, problem = None, "" if lit else "the scene has no lamp and no sky"
     if lit:
@@ -154,7 +161,8 @@ def _developed(radiance: Array, exposure: Exposure, balanced: bool) -> edges.Pic
 def _write(made: Match, request: Request) -> list[Path]:
     out = request.out
     files = [replace_file(out / "camera.toml", lambda path: path.write_text(made.text, encoding="utf-8"))]
-    files.append(replace_file(out / "match.json", lambda path: path.write_text(json.dumps(numbers(made), indent=1) + "\n", encoding="utf-8")))
+    table = json.dumps(numbers(made), indent=1) + "\n"
+    files.append(replace_file(out / "match.json", lambda path: path.write_text(table, encoding="utf-8")))
     return files + [_write_picture(out / f"{name}.png", picture) for name, picture in made.pictures.items()]
 
 

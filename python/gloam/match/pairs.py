@@ -66,8 +66,8 @@ def _pair(row: Mapping[str, Any], number: int, file: str) -> Pair:
     if pixel is None:
         raise fail(f"pixel must be two finite numbers, got {row.get('pixel')!r}")
     name = row.get("name", "")
-    if not isinstance(name, str) or len(name) > 200:
-        raise fail("name must be a text of at most 200 characters")
+    if not isinstance(name, str) or len(name) > 200 or not name.isprintable():
+        raise fail("name must be a text of at most 200 printable characters")
     if given == ["point"]:
         point = _numbers(row["point"], 3)
         if point is None:
@@ -76,8 +76,8 @@ def _pair(row: Mapping[str, Any], number: int, file: str) -> Pair:
             raise fail("corner belongs to a geom")
         return Pair(name or str(number), (pixel[0], pixel[1]), (point[0], point[1], point[2]))
     kind, corner = given[0], row.get("corner", "000")
-    if not isinstance(row[kind], str):
-        raise fail(f"{kind} must be a name")
+    if not isinstance(row[kind], str) or not row[kind].isprintable():
+        raise fail(f"{kind} must be a name of printable characters")
     if "corner" in row and (kind != "geom" or not isinstance(corner, str) or len(corner) != 3 or set(corner) - set("+-0")):
         raise fail(f"corner has three signs, such as \"++-\" or \"00+\", and belongs to a geom, got {corner!r}")
     return Pair(name or row[kind], (pixel[0], pixel[1]), None, kind, row[kind], corner)

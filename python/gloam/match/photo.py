@@ -103,11 +103,14 @@ def _open(path: Path, kind: str) -> Image.Image:
         with warnings.catch_warnings(), path.open("rb") as file:
             warnings.simplefilter("error", Image.DecompressionBombWarning)
             image = Image.open(file, formats=_FORMATS)
+            size = f"{image.width} x {image.height} pixels"
             if image.width * image.height > MOST_PIXELS or max(image.size) > LONGEST_SIDE:
                 limit = f"at most {MOST_PIXELS // 1_000_000} megapixels and {LONGEST_SIDE} per side"
-                raise gloam.InputError(f"the {kind} has {image.width} x {image.height} pixels; {limit} are accepted", str(path))
+                raise gloam.InputError(f"the {kind} has {size}; {limit} are accepted", str(path))
             image.load()
             return ImageOps.exif_transpose(image)
+    except gloam.InputError:
+        raise
     except UnidentifiedImageError:
         raise gloam.InputError(f"the {kind} is not an image; formats: {', '.join(_FORMATS)}", str(path)) from None
     except (Image.DecompressionBombError, Image.DecompressionBombWarning) as error:

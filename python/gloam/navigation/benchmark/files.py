@@ -40,5 +40,5 @@ def locked(folder: Path) -> Iterator[None]:
         try:
             fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except BlockingIOError:
-            raise UsageError(f"{folder} is in use by another benchmark") from None
+            raise UsageError(f"{folder} is in use by another process") from None
         yield
