@@ -102,7 +102,7 @@ def _frames(scene: Path, tables: Sequence[dict[str, Any]], quality: Quality) -> 
             scale = quality.longest / max(table["width"], table["height"])
             size = (max(1, round(table["width"] * scale)), max(1, round(table["height"] * scale)))
             camera = sim.cameras[f"pick/{i + 1}"]
-            frames.append((table["name"], camera.render(("rgb", "depth"), width=size[0], height=size[1], tier=quality.tier, spp=quality.spp)))
+            frames.append((table["name"], camera.render(("rgb", "depth"), width=size[0], height=size[1], **quality.options(made))))
     return frames
 
 

@@ -29,6 +29,11 @@ class Quality:
         scale = min(1.0, self.longest / max(width, height))
         return max(1, round(width * scale)), max(1, round(height * scale))
 
+    def options(self, scene: gloam.Scene) -> dict[str, Any]:
+        """Of Camera.render(), which does not read [render] of the scene."""
+        own = {name: scene[f"render.{name}"] for name in ("ev100", "max_depth")}
+        return {"tier": self.tier, "spp": self.spp, **{name: value for name, value in own.items() if value is not None}}
+
 
 def camera_table(name: str, camera: Camera) -> dict[str, Any]:
     """The camera as a [[camera]] of a scene."""
@@ -62,7 +67,7 @@ def scene_with(scene: gloam.Scene, table: Mapping[str, Any]) -> gloam.Scene:
 def render(scene: gloam.Scene, camera: str, size: tuple[int, int], outputs: tuple[str, ...], quality: Quality) -> gloam.Frame:
     """An image of the scene at time 0. MuJoCo's headlight lights it if nothing else does."""
     with gloam.load(scene) as sim:
-        return sim.cameras[camera].render(outputs, width=size[0], height=size[1], tier=quality.tier, spp=quality.spp, look="model")
+        return sim.cameras[camera].render(outputs, width=size[0], height=size[1], look="model", **quality.options(scene))
 
 
 def has_light(sim: gloam.Simulation) -> bool:
