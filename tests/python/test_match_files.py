@@ -69,6 +69,9 @@ def test_files_that_are_no_pairs_are_rejected(tmp_path: Path) -> None:
     (tmp_path / "binary.toml").write_bytes(b"\xff\xfe\x00" * 10)
     with pytest.raises(gloam.InputError, match="not valid TOML"):
         read_pairs(tmp_path / "binary.toml")
+    (tmp_path / "many.toml").write_text("[[pair]]\npixel = [1, 2]\npoint = [0, 0, 0]\n" * 501)
+    with pytest.raises(gloam.InputError, match="501 pairs; at most 500"):
+        read_pairs(tmp_path / "many.toml")
     (tmp_path / "large.toml").write_bytes(b"#" * (2 << 20))
     with pytest.raises(gloam.InputError, match="at most 1 MiB"):
         read_pairs(tmp_path / "large.toml")

@@ -215,6 +215,17 @@ def test_pixels_outside_the_photograph_are_rejected() -> None:
         solve(pixels, points, camera.lens)
 
 
+def test_many_pairs_are_solved() -> None:
+    """With a third of them wrong."""
+    camera, points, pixels = drawn(6, 150)
+    rng = np.random.default_rng(0)
+    pixels[:50] = rng.uniform(0, [1280, 960], (50, 2))
+    pixels[50:] += rng.normal(0, 0.5, (100, 2))
+    solution = solve(np.clip(pixels, 0, [1280, 960]), points, unknown_lens(camera.lens))
+    assert solution.used[50:].sum() >= 98 and solution.used[:50].sum() <= 2
+    assert np.linalg.norm(solution.camera.p - camera.p) < 5 * np.linalg.norm(solution.position_error)
+
+
 def test_the_same_pairs_give_the_same_camera() -> None:
     camera, points, pixels = drawn(9, 10)
     first, second = (solve(pixels, points, unknown_lens(camera.lens)) for _ in range(2))

@@ -63,7 +63,7 @@ class Match:
         s, lens = self.solution, self.solution.camera.lens
         place = ", ".join(f"{value:.3f} ± {error:.3f}" for value, error in zip(s.camera.p, s.position_error, strict=True))
         solved = f" ± {s.focal_error:.1f}" if Unknowns.FOCAL in s.unknowns else " (given)"
-        bent = f", k1 {lens.k1:.4f}, k2 {lens.k2:.4f}" if Unknowns.K1 in s.unknowns else ""
+        bent = "".join(f", {name} {getattr(lens, name):.4f}" for name in ("k1", "k2") if name in s.unknowns.lens_names)
         lines = [
             f"position     {place} m",
             f"lens         f {lens.f:.1f}{solved} px, fovy {lens.fovy:.2f} deg{bent}",

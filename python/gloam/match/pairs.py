@@ -20,6 +20,7 @@ from .camera import Array
 ELEMENTS = ("geom", "body", "site")
 _KEYS = {"name", "pixel", "point", "corner", *ELEMENTS}
 _LARGEST = 1 << 20  # of a file of pairs [bytes]
+_MOST = 500  # pairs
 _BOX, _SPHERE, _CAPSULE, _ELLIPSOID, _CYLINDER = 6, 2, 3, 4, 5  # mjtGeom
 _HEADER = "# Pairs for gloam match: pixel x right, y down from the corner of the top left pixel; point in the world [m].\n\n"
 
@@ -50,6 +51,8 @@ def read_pairs(path: Path) -> list[Pair]:
     rows = table.get("pair")
     if set(table) - {"pair"} or not isinstance(rows, list) or not rows or not all(isinstance(row, dict) for row in rows):
         raise gloam.InputError("a file of pairs consists of [[pair]] tables", str(path), hint="gloam match pick makes one")
+    if len(rows) > _MOST:
+        raise gloam.InputError(f"the file has {len(rows)} pairs; at most {_MOST} are accepted", str(path))
     return [_pair(row, number, str(path)) for number, row in enumerate(rows, 1)]
 
 

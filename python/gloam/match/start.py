@@ -104,10 +104,10 @@ def _bearings(pixels: Array, lens: Lens) -> Array:
 
 def _triples(n: int) -> NDArray[np.int64]:
     """All triples of n pairs, or an even choice of them."""
-    every = np.array(list(itertools.combinations(range(n), 3)))
-    if len(every) <= _MOST_TRIPLES:
-        return every
-    return np.random.default_rng(0).permutation(every)[:_MOST_TRIPLES]
+    rng = np.random.default_rng(0)
+    if n > 20:
+        return np.array([rng.choice(n, 3, replace=False) for _ in range(_MOST_TRIPLES)])
+    return rng.permutation(np.array(list(itertools.combinations(range(n), 3))))[:_MOST_TRIPLES]
 
 
 def _alike(a: Camera, b: Camera, size: float) -> bool:
