@@ -33,8 +33,8 @@ Status check_environment() {
 int run_program(int argc, char** argv) {
   CLI::App app{
       "Gloam: a robotics simulator with unmodified MuJoCo physics and path-traced sensors.\nAlso "
-      "in the source tree: ./gloam setup | test | bench | navigate | map | slam | match | mitsuba "
-      "| "
+      "in the source tree: ./gloam setup | test | bench | navigate | map | slam | match | real | "
+      "mitsuba | "
       "gallery | docs | pack | python | wheel | doctor"};
   app.name("gloam");
   app.require_subcommand(1);

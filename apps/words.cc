@@ -13,11 +13,12 @@ namespace {
 const std::vector<std::pair<std::string, std::string>> kScriptCommands = {
     {"setup", "Install missing packages and build the program"},
     {"test", "Run the tests"},
-    {"bench", "Run the benchmarks; bench nav, bench slam: of planners and of SLAM methods"},
+    {"bench", "Run the benchmarks; bench nav, bench slam, bench real: planners, SLAM, images"},
     {"navigate", "Run a scene with its planner"},
     {"map", "Make a topological map from a log"},
     {"slam", "Install SLAM methods, list them, make vocabularies"},
     {"match", "Solve the camera and exposure of a photograph in a scene"},
+    {"real", "Render views for a comparison with photographs, convert networks"},
     {"mitsuba", "Compare the path tier with Mitsuba 3"},
     {"gallery", "Render the images of docs/gallery"},
     {"docs", "Build the documentation site in build/site"},

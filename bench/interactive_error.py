@@ -4,7 +4,7 @@
 
 Each scene runs at 20 pictures a second; at some of them the path tier takes the same instant with many samples, which
 are kept in .cache/interactive_references until the scene's file changes (remove them when the models it includes, their
-materials or its generators change). Prints the mean and the 95th percentile per pixel of LDR-FLIP (bench/flip.py),
+materials or its generators change). Prints the mean and the 95th percentile per pixel of LDR-FLIP (gloam/real/flip.py),
 means over seeds of the interactive tier, the worst seed's mean, how much of it may be noise of the path tier's own pictures
 (two of them with half of the samples each differ by that), and how far the mean radiance is off, per channel. The set
 `small` has five small scenes; `realistic` has the twelve of bench/realistic_scenes, through which the camera moves, and
@@ -23,10 +23,10 @@ from dataclasses import dataclass
 import numpy as np
 from PIL import Image
 
-sys.path.insert(0, str(pathlib.Path(__file__).parent))
+ROOT = pathlib.Path(__file__).resolve().parents[1]
+sys.path.append(str(ROOT / "python" / "gloam" / "real"))
 from flip import flip  # noqa: E402
 
-ROOT = pathlib.Path(__file__).resolve().parents[1]
 BIN = ROOT / "build" / os.environ.get("GLOAM_PRESET", "release") / "bin"
 CHANNELS = ("red", "green", "blue")
 

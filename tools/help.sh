@@ -61,11 +61,11 @@ answer_help() {  # answer_help ARG…
     bench)
       case "${2:-}" in
         nav) python_help "$root/tools/navigation/commands.py" bench ;;
-        slam) python_help "$root/tools/slam/commands.py" bench ;;
+        real | slam) python_help "$root/tools/$2/commands.py" bench ;;
         *) python_help "$root/bench/run.py" ;;
       esac
       ;;
-    slam) python_help "$root/tools/slam/commands.py" ${2:+"$2"} ;;
+    real | slam) python_help "$root/tools/$1/commands.py" ${2:+"$2"} ;;
     match) if [ "${2:-}" = pick ]; then python_help "$root/tools/match/commands.py" pick; else python_help "$root/tools/match/commands.py"; fi ;;
     map | navigate) python_help "$root/tools/navigation/commands.py" "$1" ;;
     pack) python_help "$root/tools/pack.py" ;;

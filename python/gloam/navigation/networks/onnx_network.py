@@ -45,11 +45,11 @@ class OnnxNetwork:
     def __init__(
         self,
         path: str | Path,
-        inputs: Sequence[Port],
-        outputs: Sequence[Port],
+        inputs: Sequence[Port] | None,
+        outputs: Sequence[Port] | None,
         backend: Backend = "auto",
     ) -> None:
-        """inputs, outputs: the ports that the file must have, no more and no fewer; backend: "auto" = OpenVINO if it is
+        """inputs, outputs: the ports that the file must have, no more and no fewer, None = any; backend: "auto" = OpenVINO if it is
         installed, else ONNX Runtime.
 
         Errors: gloam.IoError if the file does not exist; gloam.InputError if it is not a network or its ports differ;
@@ -72,8 +72,10 @@ class OnnxNetwork:
         self.outputs = self._matched("output", outputs, found_outputs)
         self._order = [port.name for port in found_outputs]
 
-    def _matched(self, what: str, expected: Sequence[Port], found: Sequence[Port]) -> dict[str, Port]:
+    def _matched(self, what: str, expected: Sequence[Port] | None, found: Sequence[Port]) -> dict[str, Port]:
         by_name = {port.name: port for port in found}
+        if expected is None:
+            return by_name
         fits = len(found) == len(expected) and all(p.name in by_name and p.accepts(by_name[p.name]) for p in expected)
         if not fits:
             wanted, present = ("; ".join(str(port) for port in ports) or "none" for ports in (expected, found))
@@ -126,14 +128,16 @@ def _load_openvino(path: Path) -> tuple[list[Port], list[Port], _Run]:
         "ENABLE_CPU_PINNING": False,
     }
     request = core.compile_model(model, "CPU", settings).create_infer_request()
-    names = {"f32": "float32", "i64": "int64"}
+    names = {"f32": "float32", "i64": "int64", "i32": "int32", "boolean": "bool"}
 
     def ports(of: Any) -> list[Port]:
         found = []
         for port in of:
             shape = tuple(None if size.is_dynamic else size.get_length() for size in port.partial_shape)
             kind = port.element_type.get_type_name()
-            found.append(Port(port.any_name, shape, names.get(kind, kind)))
+            # A tensor may have several names; a node of a result has the file's name of that output.
+            own = port.node.friendly_name.removesuffix("/sink_port_0")
+            found.append(Port(own if own in port.names else port.any_name, shape, names.get(kind, kind)))
         return found
 
     def run(arrays: Mapping[str, NDArray[Any]]) -> Sequence[NDArray[Any]]:
@@ -154,7 +158,7 @@ def _load_onnxruntime(path: Path) -> tuple[list[Port], list[Port], _Run]:
     options.use_deterministic_compute = True
     options.log_severity_level = 3
     session = onnxruntime.InferenceSession(str(path), options, providers=["CPUExecutionProvider"])
-    names = {"tensor(float)": "float32", "tensor(int64)": "int64"}
+    names = {"tensor(float)": "float32", "tensor(int64)": "int64", "tensor(int32)": "int32", "tensor(bool)": "bool"}
 
     def ports(of: Any) -> list[Port]:
         return [

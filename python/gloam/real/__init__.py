@@ -1,0 +1,1 @@
+"""Comparison of simulated images with photographs: `gloam bench real` and `gloam real` (docs/realism.md)."""
