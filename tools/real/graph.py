@@ -22,7 +22,7 @@ class Graph:
     def constant(self, value: Any) -> str:
         """Name of a constant tensor."""
         name = f"constant_{len(self._constants)}"
-        self._constants.append(numpy_helper.from_array(np.ascontiguousarray(value), name))
+        self._constants.append(numpy_helper.from_array(np.asarray(value, order="C"), name))
         return name
 
     def floats(self, value: Any) -> str:

@@ -246,7 +246,7 @@ def response(found: Comparison, network: Network, name: str, place: int, number:
     made = {"features": answer.features.astype(np.float32), "scores": scores.astype(np.float32), "eigen": eigen_cam(answer.layer)}
     if answer.scores is not None:
         own = int(answer.scores.argmax()) if number is None else number
-        if own >= len(answer.scores):
+        if not 0 <= own < len(answer.scores):
             raise gloam.UsageError(f"the network has no class {own}: there are {len(answer.scores)}")
         made[f"grad_{own}"] = grad_cam(answer.layer, network.gradient(answer, own))
     return found.store.save(kind, picture.hash, {**(record or {}), **made})

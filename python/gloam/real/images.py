@@ -42,7 +42,7 @@ class Listing:
 
 
 def list_images(folder: Path) -> Listing:
-    """Images of a folder and its subfolders, without those whose names begin with a dot; links are not followed.
+    """Images of a folder and its subfolders, without hidden ones, whose names begin with a dot; links are not followed.
 
     Errors: gloam.IoError if it is not a folder that can be read; InputError if it holds no image.
     """
@@ -122,6 +122,8 @@ def decode(data: bytes) -> Image:
                 return _rgb(image, pillow)
     except UnusableImage:
         raise
+    except pillow.DecompressionBombError as error:  # Pillow's own limit is higher
+        raise UnusableImage(f"has more than {MOST_PIXELS >> 20} Mi pixels") from error
     except Exception as error:  # damaged files end in exceptions of many kinds
         raise UnusableImage(f"not an image that can be read: {str(error).splitlines()[0] if str(error) else type(error).__name__}") from error
 

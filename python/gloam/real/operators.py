@@ -1,6 +1,6 @@
 """Operators of ONNX in NumPy with their derivatives, for the last part of a network (tail.py).
 
-An operator maps (attributes, inputs) to its outputs and a function that maps their gradients to those of the inputs: a list with
+An operator maps (attributes, inputs) to its outputs and a function that maps their gradients to gradients of the inputs: a list with
 None where an input has no gradient. Arrays are double precision.
 """
 
