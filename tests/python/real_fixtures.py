@@ -79,7 +79,5 @@ def write_set(folder: Path, count: int, seed: int = 0, **options: Any) -> Path:
 def model_of(nodes: Sequence[Any], constants: dict[str, Any], shape: tuple[int, ...], out: tuple[int, ...]) -> Any:
     """An ONNX model from "x" to "scores"."""
     initial = [onnx.numpy_helper.from_array(np.asarray(value), name) for name, value in constants.items()]
-    graph = helper.make_graph(
-        nodes, "test", [port("x", *shape)], [port("scores", *out)], initial
-    )
+    graph = helper.make_graph(nodes, "test", [port("x", *shape)], [port("scores", *out)], initial)
     return helper.make_model(graph, opset_imports=[helper.make_opsetid("", 20)], ir_version=9)

@@ -139,9 +139,13 @@ def differences(out: Path) -> list[str]:
             check(f"{key} of {row['file']}", row[key], value)
     with (out / "differences.csv").open(newline="") as file:
         for row in csv.DictReader(file):
-            a, b = (np.array([float(one[row["statistic"]] or "nan") for one in raw.rows if one["set"] == name]) for name in ("real", row["set"]))
+            a, b = (
+                np.array([float(one[row["statistic"]] or "nan") for one in raw.rows if one["set"] == name]) for name in ("real", row["set"])
+            )
             a, b = a[np.isfinite(a)], b[np.isfinite(b)]
-            check(f"δ of {row['statistic']}", row["cliff_delta"], float(np.sign(b[None] - a[:, None]).mean()) if len(a) and len(b) else None)
+            check(
+                f"δ of {row['statistic']}", row["cliff_delta"], float(np.sign(b[None] - a[:, None]).mean()) if len(a) and len(b) else None
+            )
     summary = list(csv.DictReader((out / "summary.csv").open(newline="")))
     pairs = list(csv.DictReader((out / "pairs.csv").open(newline=""))) if (out / "pairs.csv").exists() else []
     for network in raw.request["networks"]:

@@ -25,7 +25,7 @@ import numpy as np  # noqa: E402
 from gloam.real.cam import eigen_cam, enlarged, grad_cam, normalised  # noqa: E402
 from gloam.real.network import Network, load_settings  # noqa: E402
 from real_fixtures import picture  # noqa: E402
-from test_real_network import safetensors, vocabulary  # noqa: E402
+from test_real_convert import safetensors, vocabulary  # noqa: E402
 from torch import Tensor, nn  # noqa: E402
 
 
@@ -145,7 +145,9 @@ class Plain(nn.Module):
 def check_plain() -> None:
     model = Plain().eval()
     x = torch.zeros(1, 3, 32, 32)
-    torch.onnx.export(model, (x,), str(FOLDER / "plain.onnx"), dynamo=False, input_names=["image"], output_names=["scores"], opset_version=17)
+    torch.onnx.export(
+        model, (x,), str(FOLDER / "plain.onnx"), dynamo=False, input_names=["image"], output_names=["scores"], opset_version=17
+    )
     import onnx
 
     layer = [node.output[0] for node in onnx.load(FOLDER / "plain.onnx").graph.node if node.op_type == "Relu"][-1]
@@ -297,7 +299,9 @@ def check_files() -> None:
     """State dicts of all kinds of files and types."""
     state = {"a.weight": torch.randn(4, 6).T[1:], "b": torch.randn(3).half(), "c": torch.randn(5).bfloat16(), "n": torch.tensor(7)}
     for new in (True, False):
-        torch.save({"epoch": 3, "model": {f"module.{k}": v for k, v in state.items()}}, FOLDER / "s.pth", _use_new_zipfile_serialization=new)
+        torch.save(
+            {"epoch": 3, "model": {f"module.{k}": v for k, v in state.items()}}, FOLDER / "s.pth", _use_new_zipfile_serialization=new
+        )
         read = checkpoint.read_state(FOLDER / "s.pth")
         assert set(read) == set(state) and all(np.array_equal(read[k], v.float().numpy()) for k, v in state.items()), read
     torch.save(nn.Linear(2, 2), FOLDER / "module.pth")

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 import scipy.ndimage
 from gloam.real.appearance import describe, grey_of
-from gloam.real.compare import ImageSet, Picture
 from gloam.real.flip import lab, linear
 from gloam.real.likeness import common_size, compare, ssim
 from gloam.real.reasons import STATISTICS, differences
+from gloam.real.sets import ImageSet, Picture
 from real_fixtures import picture
 
 RANDOM = np.random.default_rng(5)
@@ -96,7 +96,7 @@ def test_pairs_of_other_sizes() -> None:
 
 
 def test_large_images_are_reduced_for_flip() -> None:
-    large = np.repeat(np.repeat(picture(4), 20, 0), 20, 1)
+    large = np.repeat(picture(4), 20, 1)
     found, difference = compare(large, large)
     assert difference is not None and max(difference.shape) == 768 and found.flip == 0
 

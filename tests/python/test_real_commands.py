@@ -38,12 +38,19 @@ def test_a_comparison(commands: ModuleType, tmp_path: Path, capsys: pytest.Captu
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
-        (["--baseline", "flat"], "--baseline is NAME=DIR"), (["--baseline", "simulation=x"], "a name of its own"), ([], "no network is installed"),
+        (["--baseline", "flat"], "--baseline is NAME=DIR"),
+        (["--baseline", "simulation=x"], "a name of its own"),
+        ([], "no network is installed"),
         (["--network", "none", "--temperature", "0"], "temperature"),
     ],
-)  # fmt: skip
+)
 def test_wrong_calls(
-    commands: ModuleType, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], arguments: list[str], words: str
+    commands: ModuleType,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+    arguments: list[str],
+    words: str,
 ) -> None:
     monkeypatch.setenv("GLOAM_REAL_ENVIRONMENTS", str(tmp_path))
     assert commands.main(["bench", str(tmp_path), str(tmp_path), "--out", str(tmp_path / "out"), *arguments]) == 2

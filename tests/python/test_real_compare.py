@@ -192,7 +192,11 @@ def test_hostile_files_are_left_out(tmp_path: Path, network: Path) -> None:
     assert time.monotonic() - begin < 30 and lines["simulation"].count == 6
     reasons = dict(found.sets["simulation"].left_out)
     assert set(reasons) == {"text.png", "short.png", "bomb.png", "large.png", "tiny.png", "link.png", "folder.png", "pipe.png"}
-    assert all("more than 64 Mi" in reasons[name] for name in ("bomb.png", "large.png")) and "link" in reasons["link.png"] and "16 or more" in reasons["tiny.png"]
+    assert (
+        all("more than 64 Mi" in reasons[name] for name in ("bomb.png", "large.png"))
+        and "link" in reasons["link.png"]
+        and "16 or more" in reasons["tiny.png"]
+    )
     write_report(found)
     page = (tmp_path / "out" / "report.html").read_text()
     assert "<img src=x" not in page and "passwd" not in page and "bomb.png" in page
@@ -219,10 +223,14 @@ def test_an_image_that_changes_meanwhile(tmp_path: Path, network: Path) -> None:
 @pytest.mark.parametrize(
     ("changed", "words"),
     [
-        ({"temperature": 0.0}, "temperature"), ({"smoothing": 0.0}, "smoothing"), ({"most": 0}, "1 to 1000000 images"),
-        ({"class_number": 5}, "no class 5: there are 5"), ({"class_number": -1}, "no class -1"), ({"others": {"a/b": Path("x")}}, "name of a folder"),
+        ({"temperature": 0.0}, "temperature"),
+        ({"smoothing": 0.0}, "smoothing"),
+        ({"most": 0}, "1 to 1000000 images"),
+        ({"class_number": 5}, "no class 5: there are 5"),
+        ({"class_number": -1}, "no class -1"),
+        ({"others": {"a/b": Path("x")}}, "name of a folder"),
     ],
-)  # fmt: skip
+)
 def test_wrong_requests(tmp_path: Path, network: Path, folders: dict[str, Path], changed: dict[str, Any], words: str) -> None:
     request = {"others": {"simulation": folders["simulation"]}, "networks": (network,), **changed}
     with pytest.raises(gloam.UsageError, match=words):
@@ -233,7 +241,11 @@ def test_wrong_folders(tmp_path: Path, network: Path, folders: dict[str, Path]) 
     (tmp_path / "empty").mkdir()
     (tmp_path / "bad").mkdir()
     (tmp_path / "bad" / "a.png").write_text("x")
-    for folder, kind, words in (("none", gloam.IoError, "no such folder"), ("empty", gloam.InputError, "no images"), ("bad", gloam.InputError, "none of its 1")):
+    for folder, kind, words in (
+        ("none", gloam.IoError, "no such folder"),
+        ("empty", gloam.InputError, "no images"),
+        ("bad", gloam.InputError, "none of its 1"),
+    ):
         with pytest.raises(kind, match=words):
             compare(tmp_path / "out", network, {REAL: folders[REAL], "simulation": tmp_path / folder})
     other = write_set(tmp_path / "other", 2)
@@ -266,7 +278,8 @@ def test_many_images_in_bounded_memory(tmp_path: Path, network: Path, run_python
         for k in range(6000):
             (folder / f"copy_{k:05}.png").write_bytes(data[k % 20])
     code = (
-        "import resource\nfrom pathlib import Path\nfrom gloam.real.compare import Request, examine\nfrom gloam.real.report import write_report\n"
+        "import resource\nfrom pathlib import Path\nfrom gloam.real.compare import Request, examine\n"
+        "from gloam.real.report import write_report\n"
         "import matplotlib.figure, jinja2, openvino, onnx\nbefore = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss\n"
         f"root = Path({str(tmp_path)!r})\n"
         f"write_report(examine(Request(root / 'real', {{'simulation': root / 'sim'}}, (Path({str(network)!r}),)), root / 'out'))\n"

@@ -84,7 +84,12 @@ def test_derivatives(case: Any) -> None:
     )[0]
     # A quadratic form after the operator: the gradient that it receives differs from place to place.
     constants |= {"weight": RANDOM.standard_normal((y.size, 3)), "row": ints(1, -1)}
-    nodes = [first, node("Mul", ["y", "y"], ["square"]), node("Reshape", ["square", "row"], ["flat"]), node("MatMul", ["flat", "weight"], ["scores"])]
+    nodes = [
+        first,
+        node("Mul", ["y", "y"], ["square"]),
+        node("Reshape", ["square", "row"], ["flat"]),
+        node("MatMul", ["flat", "weight"], ["scores"]),
+    ]
     check(nodes, constants, shape, (1, 3))
 
 
@@ -95,11 +100,18 @@ def test_every_operator_has_a_case() -> None:
 def test_branches_add_and_shapes_are_constants() -> None:
     constants = {"parts": ints(2, 5), "row": ints(1, -1), "first": ints(0), "weight": RANDOM.standard_normal((30, 3))}
     nodes = [
-        node("Split", ["x", "parts"], ["a", "b"], axis=1), node("Mul", ["b", "b"], ["b2"]), node("ReduceMean", ["b2"], ["mean"], keepdims=1),
-        node("Mul", ["a", "mean"], ["scaled"]), node("Add", ["b", "b2"], ["sum"]), node("Concat", ["scaled", "sum"], ["both"], axis=1),
-        node("Shape", ["x"], ["shape"]), node("Gather", ["shape", "first"], ["rows"]), node("Reshape", ["both", "row"], ["flat"]),
-        node("Slice", ["flat", "zero", "thirty", "one"], ["cut"]), node("MatMul", ["cut", "weight"], ["scores"]),
-    ]  # fmt: skip
+        node("Split", ["x", "parts"], ["a", "b"], axis=1),
+        node("Mul", ["b", "b"], ["b2"]),
+        node("ReduceMean", ["b2"], ["mean"], keepdims=1),
+        node("Mul", ["a", "mean"], ["scaled"]),
+        node("Add", ["b", "b2"], ["sum"]),
+        node("Concat", ["scaled", "sum"], ["both"], axis=1),
+        node("Shape", ["x"], ["shape"]),
+        node("Gather", ["shape", "first"], ["rows"]),
+        node("Reshape", ["both", "row"], ["flat"]),
+        node("Slice", ["flat", "zero", "thirty", "one"], ["cut"]),
+        node("MatMul", ["cut", "weight"], ["scores"]),
+    ]
     constants |= {"zero": ints(0), "thirty": ints(30), "one": ints(1)}
     check(nodes, constants, (1, 7, 6), (1, 3))
 

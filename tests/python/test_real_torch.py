@@ -54,7 +54,9 @@ def test_cams_and_networks_equal_pytorch(run_python: Any) -> None:
     # Last: NumPy and others are those of the environment.
     path = os.pathsep.join(str(folder) for folder in [*folders, fetched / "packages"])
     code = (HERE / "real_torch.py").read_text(encoding="utf-8")
-    told = run_python(code, PYTHONPATH=path, LD_LIBRARY_PATH=libraries, OMP_NUM_THREADS="1", REAL_PACKAGES=str(fetched / "packages"), timeout=600)
+    told = run_python(
+        code, PYTHONPATH=path, LD_LIBRARY_PATH=libraries, OMP_NUM_THREADS="1", REAL_PACKAGES=str(fetched / "packages"), timeout=600
+    )
     if told.stdout.startswith("skip: "):
         pytest.skip(told.stdout.strip())
     assert "equal to PyTorch" in told.stdout

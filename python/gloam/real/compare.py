@@ -9,10 +9,9 @@ from __future__ import annotations
 import hashlib
 import json
 import time
-from collections.abc import Callable, Iterable, Iterator
 from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,20 +20,16 @@ import gloam
 from gloam._distribute.manifest import write_json
 from gloam.navigation.benchmark.files import locked, replace_file
 from gloam.navigation.benchmark.request import machine_name
-from gloam.navigation.benchmark.words import duration
 
-from . import appearance
 from .cam import eigen_cam, grad_cam
-from .images import Image, Listing, UnusableImage, content_hash, decode, list_images, pair_names, read_bytes
+from .images import Listing, list_images, pair_names
 from .likeness import compare
-from .network import Network
+from .network import Network, Settings, load_settings
+from .sets import ImageSet, Tell, load_image, survey, watched
 from .store import Arrays, Store
 
 REQUEST, CACHE = "request.json", "cache"
 REAL = "real"
-_REPORT_EVERY = 10.0  # [s]
-Tell = Callable[[str], None]
-Item = TypeVar("Item")
 
 
 @dataclass(frozen=True)
@@ -63,30 +58,6 @@ class Request:
         for name in self.others:
             if name == REAL or not name or not all(c.isalnum() or c in "_-. " for c in name) or name.startswith("."):
                 raise gloam.UsageError(f"the name of a folder of images cannot be {name!r}", hint="use letters, digits, - and _")
-
-
-@dataclass(frozen=True)
-class Picture:
-    """An image that can be used. name: relative path; hash: of the file's content; width, height: upright [px]; numbers: of
-    appearance.describe()."""
-
-    name: str
-    hash: str
-    width: int
-    height: int
-    numbers: dict[str, float]
-
-
-@dataclass(frozen=True)
-class ImageSet:
-    """Images of a folder that are compared. histograms: means of appearance.describe(); left_out: (name, reason); skipped: number
-    of further images beyond `Request.most`."""
-
-    folder: Path
-    pictures: tuple[Picture, ...]
-    histograms: dict[str, NDArray[Any]]
-    left_out: tuple[tuple[str, str], ...]
-    skipped: int
 
 
 @dataclass(frozen=True)
@@ -124,20 +95,18 @@ def examine(request: Request, out: Path, tell: Tell | None = None) -> Comparison
         _write_request(request, networks, out)
         store = Store(out / CACHE)
         chosen = _chosen(request, listings)
-        sets = {name: _survey(listings[name], chosen[name], store, name, say) for name in listings}
+        sets = {name: survey(listings[name], chosen[name], store, name, say) for name in listings}
         pairs = {name: _pairs(sets[REAL], sets[name]) for name in request.others} if request.is_paired else {}
         found = Comparison(request, out, store, sets, pairs, networks)
         for network in networks:
             _respond(found, network, say)
         for name in pairs:
-            for pair in _watched(pairs[name], f"{name}: pairs", say):
+            for pair in watched(pairs[name], f"{name}: pairs", say):
                 likeness(found, name, pair)
     return found
 
 
-def _settings(files: tuple[Path, ...]) -> list[Any]:
-    from .network import load_settings
-
+def _settings(files: tuple[Path, ...]) -> list[Settings]:
     settings = [load_settings(file) for file in files]
     names = [one.name for one in settings]
     if len(set(names)) != len(names):
@@ -169,68 +138,11 @@ def _chosen(request: Request, listings: dict[str, Listing]) -> dict[str, tuple[s
     return chosen | {name: tuple(sorted(of[real] for real in shared if real in of)) for name, of in partners.items()}
 
 
-def _watched(items: Iterable[Item], what: str, say: Tell) -> Iterator[Item]:
-    """The items, with reports of the progress and of the time that is left."""
-    every = list(items)
-    begin = last = time.monotonic()
-    for done, item in enumerate(every):
-        now = time.monotonic()
-        if done and now - last > _REPORT_EVERY:
-            say(f"{what}: {done} of {len(every)}, {duration((now - begin) / done * (len(every) - done))} left")
-            last = now
-        yield item
-
-
-def _survey(listing: Listing, names: tuple[str, ...], store: Store, what: str, say: Tell) -> ImageSet:
-    """Reads all files of a set and describes new ones."""
-    pictures, left_out = [], list(listing.left_out)
-    sums: dict[str, NDArray[Any]] = {}
-    kind = f"appearance-{appearance.VERSION}"
-    for name in _watched(names, f"{what}: images", say):
-        try:
-            data = read_bytes(listing.folder / name)
-            digest = content_hash(data)
-            record = store.load(kind, digest)
-            if record is None or set(record) != {"size", "names", "numbers", *_HISTOGRAMS}:
-                record = store.save(kind, digest, _described(decode(data)))
-        except UnusableImage as error:
-            left_out.append((name, str(error)))
-            continue
-        width, height = (int(side) for side in record["size"])
-        pictures.append(Picture(name, digest, width, height, dict(zip(record["names"].tolist(), record["numbers"].tolist(), strict=True))))
-        for kept in _HISTOGRAMS:
-            sums[kept] = sums.get(kept, 0.0) + record[kept]
-    if not pictures:
-        problem = f"none of its {len(names)} images can be used; {left_out[-1][0]!r}: {left_out[-1][1]}"
-        raise gloam.InputError(problem, str(listing.folder))
-    means = {kept: total / len(pictures) for kept, total in sums.items()}
-    return ImageSet(listing.folder, tuple(pictures), means, tuple(sorted(left_out)), len(listing.names) - len(names))
-
-
-_HISTOGRAMS = ("lightness", "gradient")
-
-
-def _described(image: Image) -> dict[str, Any]:
-    numbers, histograms = appearance.describe(image)
-    return {"size": image.shape[1::-1], "names": list(numbers), "numbers": list(numbers.values()), **histograms}
-
-
 def _pairs(real: ImageSet, other: ImageSet) -> tuple[Pair, ...]:
     """In the order of the real images."""
     places = [{picture.name: k for k, picture in enumerate(one.pictures)} for one in (real, other)]
     partners = pair_names(tuple(places[0]), tuple(places[1]))
     return tuple(Pair(places[0][mine], places[1][theirs]) for mine, theirs in partners.items())
-
-
-def load_image(one: ImageSet, picture: Picture) -> Image:
-    """Decodes an image again. Errors: gloam.IoError if it has changed meanwhile."""
-    try:
-        data = read_bytes(one.folder / picture.name)
-        if content_hash(data) == picture.hash:
-            return decode(data)
-    except UnusableImage as error:
-        raise gloam.IoError(str(error), str(one.folder / picture.name)) from error
-    raise gloam.IoError("the image has changed since the comparison began", str(one.folder / picture.name), hint="repeat the command")
 
 
 def response(found: Comparison, network: Network, name: str, place: int, number: int | None = None) -> Arrays:
@@ -269,7 +181,7 @@ def _respond(found: Comparison, network: Network, say: Tell) -> None:
     kind = f"network-{network.hash[:16]}"
     for name, one in found.sets.items():
         partner = {pair.other: pair.real for pair in found.pairs.get(name, ())}
-        for place in _watched(range(len(one.pictures)), f"{name}: {network.settings.name}", say):
+        for place in watched(range(len(one.pictures)), f"{name}: {network.settings.name}", say):
             number = found.request.class_number if network.tail else None
             if network.tail and number is None and place in partner:
                 number = class_of(found, response(found, network, REAL, partner[place])["scores"])

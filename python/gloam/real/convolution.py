@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from .operators import OPERATORS, Array, Attributes, Operator, Result
+from .shapes import SHAPE_OPERATORS
 
 _Window = tuple[slice, slice]
 
@@ -45,9 +46,7 @@ class _Windows:
         for i in range(self.kernel[0]):
             for j in range(self.kernel[1]):
                 first = (i * self.dilations[0], j * self.dilations[1])
-                rows, columns = (
-                    slice(a, a + (n - 1) * s + 1, s) for a, n, s in zip(first, self.out, self.strides, strict=True)
-                )
+                rows, columns = (slice(a, a + (n - 1) * s + 1, s) for a, n, s in zip(first, self.out, self.strides, strict=True))
                 yield i, j, (rows, columns)
 
     def cropped(self, padded: Array) -> Array:
@@ -119,4 +118,4 @@ def _global_max_pool(_: Attributes, x: list[Array]) -> Result:
 IMAGE_OPERATORS: dict[str, Operator] = {
     "Conv": _conv, "AveragePool": _average_pool, "MaxPool": _max_pool, "GlobalMaxPool": _global_max_pool,
 }  # fmt: skip
-ALL_OPERATORS: dict[str, Operator] = {**OPERATORS, **IMAGE_OPERATORS}
+ALL_OPERATORS: dict[str, Operator] = {**OPERATORS, **SHAPE_OPERATORS, **IMAGE_OPERATORS}

@@ -27,7 +27,10 @@ def group_of(order: np.ndarray) -> np.ndarray:
 
 
 def jackknife(
-    measure: Callable[[list[Group], list[Group]], float | None], a: list[Group], b: list[Group], limits: tuple[float, float] = (-np.inf, np.inf)
+    measure: Callable[[list[Group], list[Group]], float | None],
+    a: list[Group],
+    b: list[Group],
+    limits: tuple[float, float] = (-np.inf, np.inf),
 ) -> Estimate:
     """A measure of two samples with its 95 % interval by leaving out one group at a time (Efron and Tibshirani 1993, chapter 11).
 

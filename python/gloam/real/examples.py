@@ -13,10 +13,11 @@ from numpy.typing import NDArray
 from gloam.navigation.benchmark.optional import require
 
 from .cam import enlarged, normalised
-from .compare import REAL, Comparison, class_of, features_file, load_image, response
+from .compare import REAL, Comparison, class_of, features_file, response
 from .images import Image, fitted, shown
 from .likeness import compare
 from .network import Network
+from .sets import load_image
 
 _WIDTH = 240  # of images on the page [px]
 _BLOCK = 4096  # rows at a time

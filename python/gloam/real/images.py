@@ -125,7 +125,9 @@ def decode(data: bytes) -> Image:
     except pillow.DecompressionBombError as error:  # Pillow's own limit is higher
         raise UnusableImage(f"has more than {MOST_PIXELS >> 20} Mi pixels") from error
     except Exception as error:  # damaged files end in exceptions of many kinds
-        raise UnusableImage(f"not an image that can be read: {str(error).splitlines()[0] if str(error) else type(error).__name__}") from error
+        raise UnusableImage(
+            f"not an image that can be read: {str(error).splitlines()[0] if str(error) else type(error).__name__}"
+        ) from error
 
 
 def _rgb(image: Any, pillow: Any) -> Image:

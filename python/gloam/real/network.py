@@ -185,7 +185,9 @@ class Network:
         """The network with further outputs: the layer and the tensors that its tail needs."""
         import onnx
 
-        wanted = dict.fromkeys([self.settings.layer, self.settings.features, self.settings.scores, *(self.tail.boundary if self.tail else [])])
+        wanted = dict.fromkeys(
+            [self.settings.layer, self.settings.features, self.settings.scores, *(self.tail.boundary if self.tail else [])]
+        )
         infos = {info.name: info for info in [*model.graph.value_info, *model.graph.output, *model.graph.input]}
         wanted.pop("", None)
         wanted.pop(self.input, None)

@@ -20,14 +20,14 @@ Result = tuple[list[Array], Pull]
 Operator = Callable[[Attributes, list[Array]], Result]
 
 
-def _reduced(gradient: Array, shape: tuple[int, ...]) -> Array:
+def reduced(gradient: Array, shape: tuple[int, ...]) -> Array:
     """The gradient of an operand that was broadcast."""
     extra = gradient.ndim - len(shape)
     axes = tuple(range(extra)) + tuple(i + extra for i, size in enumerate(shape) if size == 1 and gradient.shape[i + extra] != 1)
     return np.asarray(gradient.sum(axis=axes).reshape(shape)) if axes else gradient
 
 
-def _one(value: Array, pull: Callable[[Array], list[Array | None]]) -> Result:
+def one(value: Array, pull: Callable[[Array], list[Array | None]]) -> Result:
     return [value], lambda gradients: pull(gradients[0])
 
 
@@ -38,7 +38,7 @@ def _binary(
 
     def run(_: Attributes, x: list[Array]) -> Result:
         a, b = x
-        return _one(value(a, b), lambda g: [_reduced(left(g, a, b), a.shape), _reduced(right(g, a, b), b.shape)])
+        return one(value(a, b), lambda g: [reduced(left(g, a, b), a.shape), reduced(right(g, a, b), b.shape)])
 
     return run
 
@@ -48,7 +48,7 @@ def _unary(value: Callable[[Array], Array], slope: Callable[[Array, Array], Arra
 
     def run(_: Attributes, x: list[Array]) -> Result:
         y = value(x[0])
-        return _one(y, lambda g: [g * slope(x[0], y)])
+        return one(y, lambda g: [g * slope(x[0], y)])
 
     return run
 
@@ -66,48 +66,48 @@ def _gelu(attributes: Attributes, x: list[Array]) -> Result:
         c = math.sqrt(2 / math.pi)
         t = np.tanh(c * (a + 0.044715 * a**3))
         slope = 0.5 * (1 + t) + 0.5 * a * (1 - t * t) * c * (1 + 3 * 0.044715 * a**2)
-        return _one(0.5 * a * (1 + t), lambda g: [g * slope])
+        return one(0.5 * a * (1 + t), lambda g: [g * slope])
     phi = 0.5 * (1 + _erf(a / math.sqrt(2)))
     slope = phi + a * np.exp(-0.5 * a * a) / math.sqrt(2 * math.pi)
-    return _one(a * phi, lambda g: [g * slope])
+    return one(a * phi, lambda g: [g * slope])
 
 
 def _leaky_relu(attributes: Attributes, x: list[Array]) -> Result:
     slope = np.where(x[0] > 0, 1.0, attributes.get("alpha", 0.01))
-    return _one(x[0] * slope, lambda g: [g * slope])
+    return one(x[0] * slope, lambda g: [g * slope])
 
 
 def _clip(attributes: Attributes, x: list[Array]) -> Result:
     low = attributes.get("min", -np.inf) if len(x) < 2 or x[1].size == 0 else x[1]
     high = attributes.get("max", np.inf) if len(x) < 3 or x[2].size == 0 else x[2]
     inside = (x[0] > low) & (x[0] < high)
-    return _one(np.clip(x[0], low, high), lambda g: [g * inside, *[None] * (len(x) - 1)])
+    return one(np.clip(x[0], low, high), lambda g: [g * inside, *[None] * (len(x) - 1)])
 
 
 def _hard_sigmoid(attributes: Attributes, x: list[Array]) -> Result:
     alpha, beta = attributes.get("alpha", 0.2), attributes.get("beta", 0.5)
     y = np.clip(alpha * x[0] + beta, 0, 1)
-    return _one(y, lambda g: [g * alpha * ((y > 0) & (y < 1))])
+    return one(y, lambda g: [g * alpha * ((y > 0) & (y < 1))])
 
 
 def _hard_swish(_: Attributes, x: list[Array]) -> Result:
     a = x[0]
     gate = np.clip(a / 6 + 0.5, 0, 1)
-    return _one(a * gate, lambda g: [g * (gate + a / 6 * ((gate > 0) & (gate < 1)))])
+    return one(a * gate, lambda g: [g * (gate + a / 6 * ((gate > 0) & (gate < 1)))])
 
 
 def _softmax(attributes: Attributes, x: list[Array]) -> Result:
     axis = attributes.get("axis", -1)
     e = np.exp(x[0] - x[0].max(axis=axis, keepdims=True))
     y = e / e.sum(axis=axis, keepdims=True)
-    return _one(y, lambda g: [y * (g - (g * y).sum(axis=axis, keepdims=True))])
+    return one(y, lambda g: [y * (g - (g * y).sum(axis=axis, keepdims=True))])
 
 
 def _matmul(_: Attributes, x: list[Array]) -> Result:
     a, b = x
     if a.ndim < 2 or b.ndim < 2:
         raise ValueError("factors of MatMul must have two dimensions or more")
-    return _one(a @ b, lambda g: [_reduced(g @ np.swapaxes(b, -1, -2), a.shape), _reduced(np.swapaxes(a, -1, -2) @ g, b.shape)])
+    return one(a @ b, lambda g: [reduced(g @ np.swapaxes(b, -1, -2), a.shape), reduced(np.swapaxes(a, -1, -2) @ g, b.shape)])
 
 
 def _gemm(attributes: Attributes, x: list[Array]) -> Result:
@@ -119,15 +119,15 @@ def _gemm(attributes: Attributes, x: list[Array]) -> Result:
     def pull(g: Array) -> list[Array | None]:
         da, db = alpha * (g @ b.T), alpha * (a.T @ g)
         gradients: list[Array | None] = [da.T if attributes.get("transA") else da, db.T if attributes.get("transB") else db]
-        return gradients + ([_reduced(beta * g, x[2].shape)] if len(x) > 2 else [])
+        return gradients + ([reduced(beta * g, x[2].shape)] if len(x) > 2 else [])
 
-    return _one(y, pull)
+    return one(y, pull)
 
 
 def _batch_norm(attributes: Attributes, x: list[Array]) -> Result:
     wide = (1, -1, *[1] * (x[0].ndim - 2))
     scale = (x[1] / np.sqrt(x[4] + attributes.get("epsilon", 1e-5))).reshape(wide)
-    return _one((x[0] - x[3].reshape(wide)) * scale + x[2].reshape(wide), lambda g: [g * scale, *[None] * 4])
+    return one((x[0] - x[3].reshape(wide)) * scale + x[2].reshape(wide), lambda g: [g * scale, *[None] * 4])
 
 
 def _layer_norm(attributes: Attributes, x: list[Array]) -> Result:
@@ -142,7 +142,7 @@ def _layer_norm(attributes: Attributes, x: list[Array]) -> Result:
         mean, along = s.mean(axis=axes, keepdims=True), (s * normal).mean(axis=axes, keepdims=True)
         return [inverse * (s - mean - normal * along), *[None] * (len(x) - 1)]
 
-    return _one(normal * x[1] + (x[2] if len(x) > 2 else 0.0), pull)
+    return one(normal * x[1] + (x[2] if len(x) > 2 else 0.0), pull)
 
 
 def _axes(attributes: Attributes, x: list[Array], which: int = 1) -> tuple[int, ...] | None:
@@ -161,11 +161,11 @@ def _reduction(value: Callable[..., Array], slope: Callable[[Array, Array, int],
     def run(attributes: Attributes, x: list[Array]) -> Result:
         axes = _axes(attributes, x)
         if axes is None:
-            return _one(x[0], lambda g: [g, *[None] * (len(x) - 1)])
+            return one(x[0], lambda g: [g, *[None] * (len(x) - 1)])
         kept = value(x[0], axis=axes, keepdims=True)
         count = x[0].size // max(1, kept.size)
         y = kept if attributes.get("keepdims", 1) else np.squeeze(kept, axis=axes)
-        return _one(y, lambda g: [g.reshape(kept.shape) * slope(x[0], kept, count), *[None] * (len(x) - 1)])
+        return one(y, lambda g: [g.reshape(kept.shape) * slope(x[0], kept, count), *[None] * (len(x) - 1)])
 
     return run
 
@@ -179,100 +179,6 @@ _mean = _reduction(np.mean, lambda a, kept, count: np.full(a.shape, 1 / count))
 
 def _global_pool(_: Attributes, x: list[Array]) -> Result:
     return _mean({"axes": list(range(2, x[0].ndim)), "keepdims": 1}, x)
-
-
-def _shaped(value: Array, x: list[Array]) -> Result:
-    """For operators that only give the numbers another shape."""
-    return _one(value, lambda g: [g.reshape(x[0].shape), *[None] * (len(x) - 1)])
-
-
-def _reshape(attributes: Attributes, x: list[Array]) -> Result:
-    wanted = [int(size) for size in x[1]]
-    sizes = [x[0].shape[i] if size == 0 and not attributes.get("allowzero") else size for i, size in enumerate(wanted)]
-    return _shaped(x[0].reshape(sizes), x)
-
-
-def _flatten(attributes: Attributes, x: list[Array]) -> Result:
-    axis = attributes.get("axis", 1)
-    return _shaped(x[0].reshape(int(np.prod(x[0].shape[:axis])), -1), x)
-
-
-def _squeeze(attributes: Attributes, x: list[Array]) -> Result:
-    given = attributes.get("axes") or ([int(axis) for axis in x[1]] if len(x) > 1 else None)
-    return _shaped(np.squeeze(x[0], axis=None if given is None else tuple(given)), x)
-
-
-def _unsqueeze(attributes: Attributes, x: list[Array]) -> Result:
-    given = attributes.get("axes") or [int(axis) for axis in x[1]]
-    return _shaped(np.expand_dims(x[0], tuple(given)), x)
-
-
-def _transpose(attributes: Attributes, x: list[Array]) -> Result:
-    order = attributes.get("perm") or list(range(x[0].ndim))[::-1]
-    return _one(x[0].transpose(order), lambda g: [g.transpose(np.argsort(order))])
-
-
-def _expand(_: Attributes, x: list[Array]) -> Result:
-    shape = np.broadcast_shapes(x[0].shape, tuple(int(size) for size in x[1]))
-    return _one(np.broadcast_to(x[0], shape), lambda g: [_reduced(g, x[0].shape), None])
-
-
-def _concat(attributes: Attributes, x: list[Array]) -> Result:
-    axis = attributes["axis"]
-    ends = np.cumsum([part.shape[axis] for part in x])[:-1]
-    return _one(np.concatenate(x, axis), lambda g: list(np.split(g, ends, axis)))
-
-
-def _picked(x: list[Array], where: Any) -> Result:
-    """Elements of the first input. where: index."""
-
-    def pull(g: Array) -> list[Array | None]:
-        gradient = np.zeros_like(x[0])
-        np.add.at(gradient, where, g)
-        return [gradient, *[None] * (len(x) - 1)]
-
-    return _one(x[0][where], pull)
-
-
-def _slice(attributes: Attributes, x: list[Array]) -> Result:
-    if "starts" in attributes:
-        starts, ends = attributes["starts"], attributes["ends"]
-        axes, steps = attributes.get("axes", range(len(starts))), [1] * len(starts)
-    else:
-        starts, ends = x[1].tolist(), x[2].tolist()
-        axes = x[3].tolist() if len(x) > 3 and x[3].size else range(len(starts))
-        steps = x[4].tolist() if len(x) > 4 else [1] * len(starts)
-    where = [slice(None)] * x[0].ndim
-    for axis, start, end, step in zip(axes, starts, ends, steps, strict=True):
-        size = x[0].shape[int(axis)]
-        stop = None if step < 0 and end < -size else int(end)
-        where[int(axis)] = slice(int(start), stop, int(step))
-    return _picked(x, tuple(where))
-
-
-def _gather(attributes: Attributes, x: list[Array]) -> Result:
-    where: list[Any] = [slice(None)] * x[0].ndim
-    where[attributes.get("axis", 0)] = x[1].astype(np.int64)
-    return _picked(x, tuple(where))
-
-
-def _split(attributes: Attributes, x: list[Array]) -> Result:
-    axis = attributes.get("axis", 0)
-    sizes = attributes.get("split") or (x[1].tolist() if len(x) > 1 else None)
-    parts = int(attributes["outputs"])
-    if sizes is None:
-        size = -(-x[0].shape[axis] // parts)
-        sizes = [size] * (parts - 1) + [x[0].shape[axis] - size * (parts - 1)]
-    ends = np.cumsum(np.asarray(sizes, int))[:-1]
-    return np.split(x[0], ends, axis), lambda gradients: [np.concatenate(gradients, axis), *[None] * (len(x) - 1)]
-
-
-def _same(_: Attributes, x: list[Array]) -> Result:
-    return _one(x[0], lambda g: [g, *[None] * (len(x) - 1)])
-
-
-def _shape(_: Attributes, x: list[Array]) -> Result:
-    return _one(np.array(x[0].shape, np.int64), lambda g: [None])
 
 
 def sum_of(parts: Sequence[Array]) -> Array:
@@ -302,7 +208,4 @@ OPERATORS: dict[str, Operator] = {
     "ReduceSum": _reduction(np.sum, lambda a, kept, count: np.ones(a.shape)),
     "ReduceL2": _reduction(_norm, lambda a, kept, count: a / kept),
     "GlobalAveragePool": _global_pool,
-    "Reshape": _reshape, "Flatten": _flatten, "Squeeze": _squeeze, "Unsqueeze": _unsqueeze, "Transpose": _transpose,
-    "Expand": _expand, "Concat": _concat, "Slice": _slice, "Gather": _gather, "Split": _split,
-    "Identity": _same, "Dropout": _same, "Cast": _same, "Shape": _shape,
 }  # fmt: skip

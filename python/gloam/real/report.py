@@ -99,7 +99,9 @@ def _findings(found: Comparison, lines: list[Line], reasons: list[Difference], f
             told.append(f"{network.settings.name}: a single image has no FID or KID. The cosine of features is the number to read.")
             continue
         equal = "" if halves is None else f"; two halves of the real images have {words.number(halves.measures[key].value, 3)}"
-        told.append(f"{network.settings.name}: {_NAMES[key]} of “{first}” is {words.number(value.value, 3)} {words.interval(value, 3)}{equal}.")
+        told.append(
+            f"{network.settings.name}: {_NAMES[key]} of “{first}” is {words.number(value.value, 3)} {words.interval(value, 3)}{equal}."
+        )
         others = [(one.measures[key].value, name) for name, one in mine.items() if name not in (first, HALVES)]
         known = [(value, name) for value, name in others if value is not None]
         if known:
@@ -120,7 +122,9 @@ def _hints(found: Comparison) -> list[str]:
     counts = {name: len(one.pictures) for name, one in found.sets.items()}
     few = min(counts.values())
     if few < _FEW:
-        hints.append(f"The smallest set has {words.count(few, 'image')}: distances between sets of fewer than {_FEW} images are mostly chance.")
+        hints.append(
+            f"The smallest set has {words.count(few, 'image')}: distances between sets of fewer than {_FEW} images are mostly chance."
+        )
     real = {picture.name.rpartition(".")[0] for picture in found.sets[REAL].pictures}
     same = [name for name in found.request.others if real == {p.name.rpartition(".")[0] for p in found.sets[name].pictures}]
     if same and not found.pairs:
@@ -131,11 +135,12 @@ def _hints(found: Comparison) -> list[str]:
     skipped = {name: one.skipped for name, one in found.sets.items() if one.skipped and not found.pairs}
     hints += [f"{count} images of “{name}” were not compared (--most)." for name, count in skipped.items()]
     alone = {name: one.skipped for name, one in found.sets.items() if one.skipped and found.pairs}
-    hints += [f"{words.count(count, 'image')} of “{name}” without a partner, or beyond --most, were not compared." for name, count in alone.items()]
+    hints += [
+        f"{words.count(count, 'image')} of “{name}” without a partner, or beyond --most, were not compared."
+        for name, count in alone.items()
+    ]
     return hints
 
 
 def _image(svg: str) -> str:
     return "data:image/svg+xml;base64," + base64.b64encode(svg.encode()).decode()
-
-

@@ -25,7 +25,9 @@ def write_tables(found: Comparison, lines: list[Line], pairs: list[Row], reasons
     summary = [_line_row(line) for line in lines]
     differing = [_difference_row(name, one) for name, every in reasons.items() for one in every]
     made = [
-        _write_csv(found.out / "images.csv", ["set", "file", "sha256", "width", "height", *[s.key for s in STATISTICS]], _image_rows(found)),
+        _write_csv(
+            found.out / "images.csv", ["set", "file", "sha256", "width", "height", *[s.key for s in STATISTICS]], _image_rows(found)
+        ),
         _write_csv(found.out / "summary.csv", list(dict.fromkeys(key for row in summary for key in row)) or ["network"], summary),
         _write_csv(found.out / "differences.csv", list(differing[0]), differing),
     ]
@@ -37,7 +39,11 @@ def write_tables(found: Comparison, lines: list[Line], pairs: list[Row], reasons
         "differences": differing,
         "pairs": [_named(row) for row in pairs],
     }
-    made.append(replace_file(found.out / "summary.json", lambda path: path.write_text(json.dumps(_finite(whole), indent=1) + "\n", encoding="utf-8")))
+    made.append(
+        replace_file(
+            found.out / "summary.json", lambda path: path.write_text(json.dumps(_finite(whole), indent=1) + "\n", encoding="utf-8")
+        )
+    )
     return made
 
 

@@ -32,7 +32,7 @@ class Tail:
         self._constants: dict[str, Array] = {one.name: numpy_helper.to_array(one) for one in graph.initializer}
         for node in graph.node:
             if node.op_type == "Constant":
-                self._constants |= {node.output[0]: np.asarray(value) for value in _attributes(node).values()}
+                self._constants[node.output[0]] = np.asarray(next(iter(_attributes(node).values())))
         self._nodes = self._between(graph.node)
         if not self._nodes:
             raise gloam.InputError(f"output '{scores}' does not depend on the layer '{layer}'")

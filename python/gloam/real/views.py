@@ -212,4 +212,6 @@ def _classic(base: gloam.Scene, shots: Shots, folder: Path, cameras: list[dict[s
     done = subprocess.run([*command, *(camera["name"] for camera in cameras)], capture_output=True, text=True, check=False, timeout=3600)
     if done.returncode != 0:
         last = (done.stderr.strip().splitlines() or ["no output"])[-1]
-        raise gloam.Error(f"MuJoCo's renderer: {last}", hint="it needs EGL or OSMesa: apt install libegl1, or MUJOCO_GL=osmesa with libosmesa6")
+        raise gloam.Error(
+            f"MuJoCo's renderer: {last}", hint="it needs EGL or OSMesa: apt install libegl1, or MUJOCO_GL=osmesa with libosmesa6"
+        )
