@@ -10,6 +10,7 @@ from typing import Any
 from gloam.navigation.benchmark import words
 from gloam.navigation.benchmark.files import replace_file
 from gloam.navigation.benchmark.optional import require
+from gloam.navigation.benchmark.statistics import Estimate
 
 from . import paper
 from .charts import feature_chart, histogram_chart
@@ -102,18 +103,25 @@ def _findings(found: Comparison, lines: list[Line], reasons: list[Difference], f
         told.append(
             f"{network.settings.name}: {_NAMES[key]} of “{first}” is {words.number(value.value, 3)} {words.interval(value, 3)}{equal}."
         )
-        others = [(one.measures[key].value, name) for name, one in mine.items() if name not in (first, HALVES)]
-        known = [(value, name) for value, name in others if value is not None]
+        known = [
+            (one.measures[key], name) for name, one in mine.items() if name not in (first, HALVES) and one.measures[key].value is not None
+        ]
         if known:
-            best, name = min(known)
-            worse = best > value.value
-            ending = f"no baseline is closer; the closest is “{name}”" if worse else f"“{name}” is closer"
-            told.append(f"{network.settings.name}: by {_NAMES[key]}, {ending} with {words.number(best, 3)}.")
+            told.append(f"{network.settings.name}: {_closest(_NAMES[key], value, *min(known, key=lambda one: one[0].value or 0.0))}")
     clear = [one for one in reasons if not one.sentence.startswith("No clear")]
     told += [one.sentence for one in clear[:3]]
     if not clear:
         told.append("No statistic of colour, contrast, noise or sharpness differs clearly.")
     return told
+
+
+def _closest(measure: str, mine: Estimate, best: Estimate, name: str) -> str:
+    """Whether the closest baseline is closer than the simulation, in words; not where their intervals overlap."""
+    a, b = mine.value or 0.0, best.value or 0.0
+    bounds = (mine.low, mine.high, best.low, best.high)
+    if None in bounds or max(mine.low or 0.0, best.low or 0.0) <= min(mine.high or 0.0, best.high or 0.0):
+        return f"by {measure}, the closest baseline, “{name}” with {words.number(b, 3)}, is not clearly closer or farther."
+    return f"by {measure}, “{name}” is {'closer' if b < a else 'the closest baseline, but farther'} with {words.number(b, 3)}."
 
 
 def _hints(found: Comparison) -> list[str]:
