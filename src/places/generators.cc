@@ -28,6 +28,7 @@ void visit_generators(const EnvironmentOptions& e, F&& f) {
   f(e.hallway, make_hallway);
   f(e.bedroom, make_bedroom);
   f(e.tunnel, make_tunnel);
+  f(e.mine, make_mine);
   f(e.terrain, make_terrain);
 }
 

@@ -14,6 +14,7 @@ Result<Place> make_office(const OfficeOptions& options);
 Result<Place> make_hallway(const HallwayOptions& options);
 Result<Place> make_bedroom(const BedroomOptions& options);
 Result<Place> make_tunnel(const TunnelOptions& options);
+Result<Place> make_mine(const MineOptions& options);
 Result<Place> make_terrain(const TerrainOptions& options);
 
 /// Place made of the scene's environment, its [[prop]]s and its vehicles; empty when it has none.

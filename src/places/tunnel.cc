@@ -9,24 +9,29 @@
 #include "base/check.h"
 #include "places/furnish/interior.h"
 #include "places/generators.h"
+#include "places/plan/curved_path.h"
 
 namespace gloam {
 namespace {
 
 constexpr double kWalk = 0.9, kKerb = 0.15;  // width and height of the walkways [m]
-constexpr double kMeshStep = 1, kFacet = 4;  // along the path: of meshes, of colliders [m]
+constexpr double kFacet = 4;                 // of colliders along the path [m]
 constexpr int kArch = 32, kArchFacets = 12;  // facets of the arch: of meshes, of colliders
 constexpr double kOpen = 25;                 // road outside each portal [m]
 constexpr double kStation = 40;              // between emergency stations [m]
 constexpr double kLining = 0.4;              // thickness of what collides
 
+using Station = CurvedPath::Station;
+
 class TunnelBuilder {
  public:
   explicit TunnelBuilder(const TunnelOptions& options)
-      : o_(options), dice_(options.seed, "tunnel"), place_("tunnel") {
+      : o_(options),
+        dice_(options.seed, "tunnel"),
+        place_("tunnel"),
+        path_({o_.length, o_.curve, kOpen}, &dice_) {
     half_ = o_.width / 2 + kWalk;
     wall_ = 0.4 * o_.height;
-    lay_path();
   }
 
   Place build() {
@@ -45,100 +50,15 @@ class TunnelBuilder {
   }
 
  private:
-  struct Station {
-    double s;  // along the path from the western portal [m]
-    double x, y, heading;
-  };
-
-  // Bends left and right, no sharper than asked for, level all along; the origin looks along +x.
-  void lay_path() {
-    const double bend = dice_.uniform(0.5, 1) / o_.curve * (dice_.chance(0.5) ? 1 : -1);
-    const double wave = dice_.uniform(0.7, 1.4) * 2 * M_PI / std::max(o_.length, 120.0);
-    const double origin = o_.length / 4;
-    const int before = static_cast<int>(std::ceil((origin + kOpen) / kMeshStep));
-    const int after = static_cast<int>(std::ceil((o_.length - origin + kOpen) / kMeshStep));
-    std::vector<Station> back;
-    for (const int direction : {-1, 1}) {
-      double x = 0, y = 0, heading = 0;
-      for (int i = 0; i <= (direction < 0 ? before : after); ++i) {
-        const double s = direction * i * kMeshStep;
-        (direction < 0 ? back : path_).push_back({origin + s, x, y, heading});
-        const double turn = bend * std::cos(wave * s) * kMeshStep * direction;
-        x += direction * kMeshStep * std::cos(heading + turn / 2);
-        y += direction * kMeshStep * std::sin(heading + turn / 2);
-        heading += turn;
-      }
-    }
-    path_.insert(path_.begin(), back.rbegin(), back.rend() - 1);
-  }
-
-  Station at(double s) const {
-    const double t = std::clamp((s - path_.front().s) / kMeshStep, 0.0,
-                                static_cast<double>(path_.size()) - 1.001);
-    const auto i = static_cast<size_t>(t);
-    const double f = t - static_cast<double>(i);
-    const Station &a = path_[i], &b = path_[i + 1];
-    return {s, a.x + f * (b.x - a.x), a.y + f * (b.y - a.y),
-            a.heading + f * (b.heading - a.heading)};
-  }
-  // A point `left` of the path, in the world.
-  Vec3f point(const Station& k, double left, double z) const {
-    return {float(k.x - std::sin(k.heading) * left), float(k.y + std::cos(k.heading) * left),
-            float(z)};
-  }
-  Pose pose(double s, double left, double z, double turned) const {
-    const Station k = at(s);
-    const Vec3f p = point(k, left, z);
-    return {{p.x, p.y, p.z}, turn({0, 0, 1}, k.heading + turned)};
-  }
-  std::vector<Station> within(double from, double to) const {
-    std::vector<Station> list;
-    const int count = std::max(1, static_cast<int>(std::ceil((to - from) / kMeshStep)));
-    for (int i = 0; i <= count; ++i) list.push_back(at(from + (to - from) * i / count));
-    return list;
-  }
-
   // Half of an ellipse on two walls, from the left foot over the crown to the right: i of n.
   Vec2f arch(double i, double n) const {
     const double angle = M_PI * i / n;
     return {float(half_ * std::cos(angle)), float(wall_ + (o_.height - wall_) * std::sin(angle))};
   }
 
-  // A strip along the path between two lines of the cross section; its front is to the left of
-  // the way from a to b, seen along the path.
-  Solid strip(double from, double to, Vec2f a, Vec2f b) const {
-    std::vector<Vec3f> points;
-    for (const Station& k : within(from, to)) {
-      points.push_back(point(k, a.x, a.y));
-      points.push_back(point(k, b.x, b.y));
-    }
-    return sheet(points, 2);
-  }
-
   void put(const std::string& label, Prop prop) {
     prop.label = label;
     place_.put(place_.add(std::move(prop)), "", {});
-  }
-
-  // A box between two stations along a line of the cross section: `thick` to the right of the way
-  // from p to q seen from behind, below 0 to the left.
-  void collide_strip(PropPart* part, const Station& a, const Station& b, Vec2f p, Vec2f q,
-                     double thick) const {
-    const double mx = (a.x + b.x) / 2, my = (a.y + b.y) / 2;
-    const double heading = std::atan2(b.y - a.y, b.x - a.x),
-                 length = std::hypot(b.x - a.x, b.y - a.y);
-    const double dy = q.x - p.x, dz = q.y - p.y, wide = std::hypot(dy, dz);
-    const double roll = std::atan2(dz, dy);
-    // Outwards is to the right of the way from p to q.
-    const double left = (p.x + q.x) / 2 + dz / wide * thick / 2,
-                 z = (p.y + q.y) / 2 - dy / wide * thick / 2;
-    const Station middle{0, mx, my, heading};
-    const Quat yaw = turn({0, 0, 1}, heading), r = turn({1, 0, 0}, roll);
-    const Quat both{yaw.w * r.w - yaw.z * r.z, yaw.w * r.x - yaw.z * r.y, yaw.w * r.y + yaw.z * r.x,
-                    yaw.w * r.z + yaw.z * r.w};
-    part->collide_box(point(middle, left, z),
-                      {float(length / 2 + 0.05), float(wide / 2), float(std::abs(thick) / 2)},
-                      both);
   }
 
   void add_lining(Workshop* shop) {
@@ -147,17 +67,17 @@ class TunnelBuilder {
     const std::string panels = shop->tiles({0.72, 0.73, 0.71}, 0.9f, {0.40, 0.40, 0.39});
     const std::string concrete = shop->plaster({0.47, 0.46, 0.44});
     const float half = float(half_), wall = float(wall_), panel = std::min(wall, 2.4f);
-    b.show("panels", panels, strip(0, o_.length, {half, panel}, {half, 0}));
-    b.show("panels", panels, strip(0, o_.length, {-half, 0}, {-half, panel}));
+    b.show("panels", panels, path_.strip(0, o_.length, {half, panel}, {half, 0}));
+    b.show("panels", panels, path_.strip(0, o_.length, {-half, 0}, {-half, panel}));
     if (panel < wall) {
-      b.show("lining", concrete, strip(0, o_.length, {half, wall}, {half, panel}));
-      b.show("lining", concrete, strip(0, o_.length, {-half, panel}, {-half, wall}));
+      b.show("lining", concrete, path_.strip(0, o_.length, {half, wall}, {half, panel}));
+      b.show("lining", concrete, path_.strip(0, o_.length, {-half, panel}, {-half, wall}));
     }
     std::vector<Vec3f> points;
-    for (const Station& k : within(0, o_.length))
+    for (const Station& k : path_.within(0, o_.length))
       for (int i = kArch; i >= 0; --i) {
         const Vec2f q = arch(i, kArch);
-        points.push_back(point(k, q.x, q.y));
+        points.push_back(path_.point(k, q.x, q.y));
       }
     b.show("lining", concrete, sheet(points, kArch + 1));
     // Joints between the cast rings.
@@ -165,35 +85,36 @@ class TunnelBuilder {
     for (double s = 8; s < o_.length - 4; s += 8) {
       std::vector<Vec3f> ring;
       for (const double ds : {-0.02, 0.02}) {
-        ring.push_back(point(at(s + ds), -half * 0.999, kKerb));
+        ring.push_back(path_.point(path_.at(s + ds), -half * 0.999, kKerb));
         for (int i = kArch; i >= 0; --i) {
           const Vec2f q = arch(i, kArch) * 0.999f;
-          ring.push_back(point(at(s + ds), q.x, q.y));
+          ring.push_back(path_.point(path_.at(s + ds), q.x, q.y));
         }
-        ring.push_back(point(at(s + ds), half * 0.999, kKerb));
+        ring.push_back(path_.point(path_.at(s + ds), half * 0.999, kKerb));
       }
       b.show("joints", joint, sheet(ring, kArch + 3));
     }
     const int facets = std::max(1, static_cast<int>(std::lround(o_.length / kFacet)));
     for (int k = 0; k < facets; ++k) {
-      const Station from = at(o_.length * k / facets), to = at(o_.length * (k + 1) / facets);
-      collide_strip(&b, from, to, {half, wall}, {half, -0.2f}, -kLining);
-      collide_strip(&b, from, to, {-half, -0.2f}, {-half, wall}, -kLining);
+      const Station from = path_.at(o_.length * k / facets),
+                    to = path_.at(o_.length * (k + 1) / facets);
+      collide_strip(&b, from, to, {{half, wall}, {half, -0.2f}}, -kLining);
+      collide_strip(&b, from, to, {{-half, -0.2f}, {-half, wall}}, -kLining);
       for (int i = 0; i < kArchFacets; ++i)
-        collide_strip(&b, from, to, arch(i, kArchFacets), arch(i + 1, kArchFacets), kLining);
+        collide_strip(&b, from, to, {arch(i, kArchFacets), arch(i + 1, kArchFacets)}, kLining);
     }
     put("wall", std::move(p));
   }
 
   void add_road(Workshop* shop) {
-    const double from = path_.front().s, to = path_.back().s;
+    const double from = path_.first(), to = path_.last();
     const float edge = float(o_.width / 2), half = float(half_), kerb = float(kKerb);
     Prop road;
     PropPart& b = road.body();
-    b.show("asphalt", shop->asphalt(), strip(from, to, {edge, 0}, {-edge, 0}));
+    b.show("asphalt", shop->asphalt(), path_.strip(from, to, {edge, 0}, {-edge, 0}));
     // All is level: one box from end to end.
     Vec3f low{1e9f, 1e9f, -0.5f}, high{-1e9f, -1e9f, 0};
-    for (const Station& k : path_) {
+    for (const Station& k : path_.stations()) {
       low = {std::min(low.x, float(k.x)), std::min(low.y, float(k.y)), low.z};
       high = {std::max(high.x, float(k.x)), std::max(high.y, float(k.y)), high.z};
     }
@@ -204,25 +125,26 @@ class TunnelBuilder {
     const std::string white = shop->paint({0.78, 0.78, 0.75}, 0.6);
     for (const float side : {-1.0f, 1.0f})
       lines.body().show("lines", white,
-                        strip(from, to, {side * (edge - 0.2f) + 0.06f, 0.003f},
-                              {side * (edge - 0.2f) - 0.06f, 0.003f}));
+                        path_.strip(from, to, {side * (edge - 0.2f) + 0.06f, 0.003f},
+                                    {side * (edge - 0.2f) - 0.06f, 0.003f}));
     if (o_.width >= 5.5)
       for (double s = from + 2; s < to - 3; s += 9)
-        lines.body().show("lines", white, strip(s, s + 3, {0.06f, 0.003f}, {-0.06f, 0.003f}));
+        lines.body().show("lines", white, path_.strip(s, s + 3, {0.06f, 0.003f}, {-0.06f, 0.003f}));
     put("lane_marking", std::move(lines));
 
     Prop walks;
     PropPart& w = walks.body();
     const std::string stone = shop->concrete({0.55, 0.54, 0.52});
-    w.show("walkway", stone, strip(0, o_.length, {half, kerb}, {edge, kerb}));
-    w.show("walkway", stone, strip(0, o_.length, {-edge, kerb}, {-half, kerb}));
-    w.show("kerb", stone, strip(0, o_.length, {edge, kerb}, {edge, 0}));
-    w.show("kerb", stone, strip(0, o_.length, {-edge, 0}, {-edge, kerb}));
+    w.show("walkway", stone, path_.strip(0, o_.length, {half, kerb}, {edge, kerb}));
+    w.show("walkway", stone, path_.strip(0, o_.length, {-edge, kerb}, {-half, kerb}));
+    w.show("kerb", stone, path_.strip(0, o_.length, {edge, kerb}, {edge, 0}));
+    w.show("kerb", stone, path_.strip(0, o_.length, {-edge, 0}, {-edge, kerb}));
     const int facets = std::max(1, static_cast<int>(std::lround(o_.length / kFacet)));
     for (int k = 0; k < facets; ++k) {
-      const Station a = at(o_.length * k / facets), z = at(o_.length * (k + 1) / facets);
-      collide_strip(&w, a, z, {half, kerb}, {edge, kerb}, -kKerb + 0.001);
-      collide_strip(&w, a, z, {-edge, kerb}, {-half, kerb}, -kKerb + 0.001);
+      const Station a = path_.at(o_.length * k / facets),
+                    z = path_.at(o_.length * (k + 1) / facets);
+      collide_strip(&w, a, z, {{half, kerb}, {edge, kerb}}, -kKerb + 0.001);
+      collide_strip(&w, a, z, {{-edge, kerb}, {-half, kerb}}, -kKerb + 0.001);
     }
     put("walkway", std::move(walks));
   }
@@ -231,30 +153,28 @@ class TunnelBuilder {
     Prop p;
     PropPart& b = p.body();
     const auto along = [&](double left, double z, double radius) {
-      Path path;
-      for (const Station& k : within(0.5, o_.length - 0.5)) path.push_back(point(k, left, z));
-      return tube(path, float(radius), 10);
+      return path_.cable(0.5, o_.length - 0.5, {float(left), float(z)}, radius);
     };
     const double z = std::min(wall_ - 0.2, 2.75);
     b.show("main", shop->paint({0.50, 0.07, 0.06}, 0.4), along(half_ - 0.12, z, 0.06));
     // A tray of cables on brackets on the other side.
     const std::string steel = shop->metal("galvanised");
     const float left = -float(half_) + 0.04f, tray = float(z);
-    b.show("tray", steel, strip(0.5, o_.length - 0.5, {left + 0.26f, tray}, {left, tray}));
+    b.show("tray", steel, path_.strip(0.5, o_.length - 0.5, {left + 0.26f, tray}, {left, tray}));
     b.show("tray", steel,
-           strip(0.5, o_.length - 0.5, {left, tray - 0.001f}, {left + 0.26f, tray - 0.001f}));
+           path_.strip(0.5, o_.length - 0.5, {left, tray - 0.001f}, {left + 0.26f, tray - 0.001f}));
     b.show("tray", steel,
-           strip(0.5, o_.length - 0.5, {left + 0.26f, tray + 0.06f}, {left + 0.26f, tray}));
+           path_.strip(0.5, o_.length - 0.5, {left + 0.26f, tray + 0.06f}, {left + 0.26f, tray}));
     b.show("tray", steel,
-           strip(0.5, o_.length - 0.5, {left + 0.261f, tray}, {left + 0.261f, tray + 0.06f}));
+           path_.strip(0.5, o_.length - 0.5, {left + 0.261f, tray}, {left + 0.261f, tray + 0.06f}));
     for (int i = 0; i < 4; ++i)
       b.show("cables", shop->rubber({0.05, 0.05, 0.055}),
              along(left + 0.05 + 0.05 * i, z + 0.022, 0.012 + 0.004 * (i % 2)));
     for (double s = 1.5; s < o_.length - 1; s += 3) {
-      const Station k = at(s);
+      const Station k = path_.at(s);
       for (const double side : {-1.0, 1.0}) {
-        const Vec3f a = point(k, side * (half_ - 0.01), z - 0.07),
-                    e = point(k, side * (half_ - 0.3), z - 0.07);
+        const Vec3f a = path_.point(k, side * (half_ - 0.01), z - 0.07),
+                    e = path_.point(k, side * (half_ - 0.3), z - 0.07);
         b.show("brackets", steel, bar(a, e, 0.012f, 0.012f, 6));
       }
     }
@@ -268,7 +188,7 @@ class TunnelBuilder {
     const float half = float(half_), wide = half + 4.5f, top = float(o_.height) + 1.6f;
     for (const bool west : {true, false}) {
       const double end = west ? 0 : o_.length, out = west ? -kOpen : kOpen;
-      const Station k = at(end);
+      const Station k = path_.at(end);
       Prop p;
       PropPart& b = p.body();
       // From the arch's line outwards to a rectangle.
@@ -280,20 +200,21 @@ class TunnelBuilder {
         const float grow =
             q.y <= 0 ? wide / half : std::min(wide / std::max(std::abs(q.x), 1e-3f), top / q.y);
         const Vec2f outer{std::clamp(q.x * grow, -wide, wide), std::min(q.y * grow, top)};
-        face.push_back(point(k, outer.x, q.y <= 0 ? 0 : outer.y));
+        face.push_back(path_.point(k, outer.x, q.y <= 0 ? 0 : outer.y));
       }
       std::vector<Vec3f> wall;
       for (size_t i = 0; i < inner.size(); ++i) {
-        wall.push_back(west ? point(k, inner[i].x, inner[i].y) : face[i]);
-        wall.push_back(west ? face[i] : point(k, inner[i].x, inner[i].y));
+        wall.push_back(west ? path_.point(k, inner[i].x, inner[i].y) : face[i]);
+        wall.push_back(west ? face[i] : path_.point(k, inner[i].x, inner[i].y));
       }
       b.show("portal", stone, sheet(wall, 2, 0.002f));
       for (const float side : {-1.0f, 1.0f}) {
         // Its colliders: beside the road, and over it.
-        const Vec3f c = point(at(end + (west ? 0.25 : -0.25)), side * (half + 2.25), top / 2);
+        const Vec3f c =
+            path_.point(path_.at(end + (west ? 0.25 : -0.25)), side * (half + 2.25), top / 2);
         b.collide_box(c, {0.25f, 2.25f, top / 2}, turn({0, 0, 1}, k.heading));
       }
-      b.collide_box(point(at(end + (west ? 0.25 : -0.25)), 0, (top + o_.height) / 2),
+      b.collide_box(path_.point(path_.at(end + (west ? 0.25 : -0.25)), 0, (top + o_.height) / 2),
                     {0.25f, half, float(top - o_.height) / 2}, turn({0, 0, 1}, k.heading));
       put("portal", std::move(p));
 
@@ -302,7 +223,7 @@ class TunnelBuilder {
         // Verges that rise to banks of the cutting.
         std::vector<Vec3f> points;
         const double a = std::min(end, end + out), z = std::max(end, end + out);
-        for (const Station& q : within(a, z)) {
+        for (const Station& q : path_.within(a, z)) {
           const double share = std::abs(q.s - end) / kOpen;
           const double rise = top * (1 - 0.55 * share);
           const std::pair<double, double> line[] = {{o_.width / 2, -0.01},
@@ -311,24 +232,24 @@ class TunnelBuilder {
                                                     {half_ + 30, rise + 3}};
           for (int i = 0; i < 4; ++i) {
             const auto& [left, height] = line[side > 0 ? 3 - i : i];
-            points.push_back(point(q, side * left, height));
+            points.push_back(path_.point(q, side * left, height));
           }
         }
         bank.body().show("grass", lawn, sheet(points, 4));
         for (double s = a; s < z - 0.1; s += 5) {
-          const Station q = at(s + 2.5);
-          bank.body().collide_box(point(q, side * (half_ + 5.5), top / 4), {2.6f, 3.0f, top / 4},
-                                  turn({0, 0, 1}, q.heading));
+          const Station q = path_.at(s + 2.5);
+          bank.body().collide_box(path_.point(q, side * (half_ + 5.5), top / 4),
+                                  {2.6f, 3.0f, top / 4}, turn({0, 0, 1}, q.heading));
         }
       }
       put("bank", std::move(bank));
     }
     Prop hill;
     std::vector<Vec3f> points;
-    for (const Station& q : within(0, o_.length)) {
+    for (const Station& q : path_.within(0, o_.length)) {
       const double share = std::min(q.s, o_.length - q.s) / std::max(o_.length / 2, 1.0);
       for (const double left : {30.0, half_ + 4.5, 0.0, -half_ - 4.5, -30.0})
-        points.push_back(point(q, left, top + (std::abs(left) > 20 ? 3 : 0) + 9 * share));
+        points.push_back(path_.point(q, left, top + (std::abs(left) > 20 ? 3 : 0) + 9 * share));
     }
     hill.body().show("grass", lawn, sheet(points, 5));
     put("hill", std::move(hill));
@@ -355,7 +276,7 @@ class TunnelBuilder {
         const double left = side * o_.width * 0.27;
         const double share = left / half_;
         const double z = wall_ + (o_.height - wall_) * std::sqrt(1 - share * share) - 0.12;
-        place_.put(dice_.chance(o_.failed) ? dark : lit, "", pose(s, left, z, M_PI / 2));
+        place_.put(dice_.chance(o_.failed) ? dark : lit, "", path_.pose(s, left, z, M_PI / 2));
       }
   }
 
@@ -363,11 +284,11 @@ class TunnelBuilder {
   void add_stations() {
     for (double s = std::min(10.0, o_.length / 2); s < o_.length - 4; s += kStation) {
       const double left = -half_ + 0.001;
-      place_.put(make("wall_extinguisher"), "", pose(s, left, kKerb + 1.0, M_PI / 2));
-      place_.put(make("wall_phone"), "", pose(s + 0.6, left, kKerb + 1.4, M_PI / 2));
-      place_.put(make("exit_sign"), "", pose(s + 0.3, left, kKerb + 2.0, M_PI / 2));
+      place_.put(make("wall_extinguisher"), "", path_.pose(s, left, kKerb + 1.0, M_PI / 2));
+      place_.put(make("wall_phone"), "", path_.pose(s + 0.6, left, kKerb + 1.4, M_PI / 2));
+      place_.put(make("exit_sign"), "", path_.pose(s + 0.3, left, kKerb + 2.0, M_PI / 2));
       if (s + 14 < o_.length - 2)
-        place_.put(make("hose_reel"), "", pose(s + 14, left, kKerb + 1.1, M_PI / 2));
+        place_.put(make("hose_reel"), "", path_.pose(s + 14, left, kKerb + 1.1, M_PI / 2));
     }
   }
 
@@ -388,14 +309,14 @@ class TunnelBuilder {
         for (int k = 0; k < 3; ++k) {
           const int cone = make(kind);
           const bool loose = dice_.chance(o_.loose);
-          place_.put(cone, "", pose(s + 1.3 * k, lane, 0, dice_.uniform(-3, 3)), loose);
+          place_.put(cone, "", path_.pose(s + 1.3 * k, lane, 0, dice_.uniform(-3, 3)), loose);
         }
         s += 3;
       } else {
         const int thing = make(kind);
         const bool loose = place_.prop(thing).loose && dice_.chance(o_.loose);
         const double turned = kind == "safety_barrier" ? 0 : dice_.uniform(-0.3, 0.3);
-        place_.put(thing, "", pose(s, lane, 0, turned), loose);
+        place_.put(thing, "", path_.pose(s, lane, 0, turned), loose);
       }
     }
   }
@@ -403,7 +324,7 @@ class TunnelBuilder {
   void add_regions() {
     const int count = std::max(1, static_cast<int>(std::lround(o_.length / 10)));
     for (int i = 0; i < count; ++i) {
-      const Station a = at(o_.length * i / count), b = at(o_.length * (i + 1) / count);
+      const Station a = path_.at(o_.length * i / count), b = path_.at(o_.length * (i + 1) / count);
       const double grow = o_.width * 0.25;
       place_.regions.push_back({fmt::format("road_{}", i + 1),
                                 "road",
@@ -416,7 +337,7 @@ class TunnelBuilder {
   Dice dice_;
   Place place_;
   double half_, wall_;  // half of the clear width, height of the upright walls [m]
-  std::vector<Station> path_;
+  CurvedPath path_;
 };
 
 }  // namespace

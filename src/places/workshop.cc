@@ -339,6 +339,19 @@ std::string Workshop::bedrock() {
   return add(std::move(look));
 }
 
+std::string Workshop::blasted_rock() {
+  Look look =
+      patterned("blasted_rock", noise({0.050, 0.045, 0.040}, {0.165, 0.152, 0.136}, 0.35, 0.03,
+                                      0.85, "turbulence"));
+  PatternOptions dust;
+  dust.kind = "dirt";
+  dust.color_b = Vec3{0.210, 0.192, 0.168};
+  dust.scale = 0.5;
+  dust.amount = 0.3;
+  look.more.wear = dust;
+  return add(std::move(look));
+}
+
 std::string Workshop::blades(const std::string& name, Vec3 young, Vec3 old) {
   Look look = patterned(name, noise(old, young, 0.22, 0, 0.55));
   look.more.subsurface_weight = 0.45;

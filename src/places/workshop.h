@@ -70,6 +70,7 @@ class Workshop {
   std::string soil(Vec3 dry, Vec3 dark, double wet = 0);  ///< bare, with crumbs and stones
   std::string turf();                                     ///< ground between blades of grass
   std::string bedrock();                                  ///< grey, with lichen
+  std::string blasted_rock();                             ///< rock underground, with dust on it
   std::string blades(const std::string& name, Vec3 young, Vec3 old);  ///< grass, thin
   std::string water();                             ///< water of a pond, clear to murky
   std::string weathered_boards(Axis grain);        ///< grey, never painted

@@ -35,7 +35,7 @@ constexpr AdversityNumbers kRooms[] = {{},
                                         .clutter = 1,
                                         .people = 5,
                                         .people_speed = 1.4}};
-// Halls and tunnels: dust.
+// Halls, tunnels and mines: dust.
 constexpr AdversityNumbers kHalls[] = {{},
                                        {.visibility = 40,
                                         .medium = "dust",
@@ -66,13 +66,14 @@ void with_clutter(EnvironmentOptions* place, const F& f) {
   if (place->hallway) f(&place->hallway->clutter);
   if (place->bedroom) f(&place->bedroom->clutter);
   if (place->tunnel) f(&place->tunnel->clutter);
+  if (place->mine) f(&place->mine->clutter);
 }
 
 }  // namespace
 
 AdversityNumbers adversity_numbers(const EnvironmentOptions& place, std::string_view level) {
   const size_t row = level == "major" ? 2 : (level == "minor" ? 1 : 0);
-  if (place.warehouse || place.tunnel) return kHalls[row];
+  if (place.warehouse || place.tunnel || place.mine) return kHalls[row];
   return has_rooms(place) ? kRooms[row] : kOpenCountry[row];
 }
 

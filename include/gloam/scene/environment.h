@@ -32,6 +32,7 @@ struct EnvironmentOptions {
   std::optional<HallwayOptions> hallway = {};
   std::optional<BedroomOptions> bedroom = {};
   std::optional<TunnelOptions> tunnel = {};
+  std::optional<MineOptions> mine = {};
   std::optional<TerrainOptions> terrain = {};
   SourceLoc loc = {};
 };

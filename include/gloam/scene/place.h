@@ -106,6 +106,25 @@ struct TunnelOptions {
   SourceLoc loc = {};
 };
 
+/// [environment.mine]: a drift of a mine, blasted through rock, along x and gently curved, with
+/// niches on both sides. No daylight enters it. The world's origin is on the floor, a quarter of the
+/// length from the western face.
+struct MineOptions {
+  uint64_t seed = 1;     ///< seed of the mine
+  double length = 80;    ///< [m], 20 … 400
+  double width = 5;      ///< mean width of the drift [m], 3 … 10
+  double height = 4;     ///< mean height of its crown above the floor [m], 2.6 … 8
+  double curve = 150;    ///< minimum radius of curvature [m], 40 … 5000
+  double relief = 0.25;  ///< of the rock about the mean [m], 0.05 … 0.5
+  double supports = 8;   ///< distance between steel arches [m], 1 … 50; 0 = none
+  double niches = 25;    ///< mean distance between niches [m], 12 … 200; 0 = none
+  double lamps = 10;     ///< distance between lamps [m], 4 … 60
+  double failed = 0.1;   ///< fraction of lamps that do not work, 0 … 1
+  double clutter = 0.5;  ///< 0 bare … 1: rocks and goods along one wall
+  double loose = 0.1;    ///< fraction of movable objects that are loose, 0 … 1
+  SourceLoc loc = {};
+};
+
 /// [environment.terrain]: open terrain under the sky, a rectangle around the world's origin. The
 /// origin is on level free ground at z = 0, on the road along x if there is one.
 struct TerrainOptions {

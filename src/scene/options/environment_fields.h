@@ -94,6 +94,22 @@ void visit_fields(Visitor& v, TunnelOptions& o) {
 }
 
 template <class Visitor>
+void visit_fields(Visitor& v, MineOptions& o) {
+  v("seed", o.seed, FieldRule{});
+  v("length", o.length, FieldRule{.unit = "m", .min = 20, .max = 400});
+  v("width", o.width, FieldRule{.unit = "m", .min = 3, .max = 10});
+  v("height", o.height, FieldRule{.unit = "m", .min = 2.6, .max = 8});
+  v("curve", o.curve, FieldRule{.unit = "m", .min = 40, .max = 5000});
+  v("relief", o.relief, FieldRule{.unit = "m", .min = 0.05, .max = 0.5});
+  v("supports", o.supports, FieldRule{.unit = "m", .min = 0, .max = 50});
+  v("niches", o.niches, FieldRule{.unit = "m", .min = 0, .max = 200});
+  v("lamps", o.lamps, FieldRule{.unit = "m", .min = 4, .max = 60});
+  v("failed", o.failed, kShare);
+  v("clutter", o.clutter, kShare);
+  v("loose", o.loose, kShare);
+}
+
+template <class Visitor>
 void visit_fields(Visitor& v, TerrainOptions& o) {
   v("seed", o.seed, FieldRule{});
   v("length", o.length, FieldRule{.unit = "m", .min = 20, .max = 200});
@@ -122,6 +138,7 @@ void visit_fields(Visitor& v, EnvironmentOptions& o) {
   v("hallway", o.hallway, FieldRule{});
   v("bedroom", o.bedroom, FieldRule{});
   v("tunnel", o.tunnel, FieldRule{});
+  v("mine", o.mine, FieldRule{});
   v("terrain", o.terrain, FieldRule{});
 }
 

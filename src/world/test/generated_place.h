@@ -55,6 +55,7 @@ class GeneratedPlace : public ::testing::Test {
     return scene_of(&EnvironmentOptions::bedroom, o);
   }
   Scene scene_of(const TunnelOptions& o) const { return scene_of(&EnvironmentOptions::tunnel, o); }
+  Scene scene_of(const MineOptions& o) const { return scene_of(&EnvironmentOptions::mine, o); }
   Scene scene_of(const TerrainOptions& o) const {
     return scene_of(&EnvironmentOptions::terrain, o);
   }

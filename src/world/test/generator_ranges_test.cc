@@ -87,6 +87,7 @@ TEST_F(GeneratorRanges, OfficesAreMade) { expect_made<OfficeOptions>(1, 24); }
 TEST_F(GeneratorRanges, HallwaysAreMade) { expect_made<HallwayOptions>(1, 48); }
 TEST_F(GeneratorRanges, BedroomsAreMade) { expect_made<BedroomOptions>(1, 48); }
 TEST_F(GeneratorRanges, TunnelsAreMade) { expect_made<TunnelOptions>(1, 16); }
+TEST_F(GeneratorRanges, MinesAreMade) { expect_made<MineOptions>(1, 16); }
 TEST_F(GeneratorRanges, TerrainsAreMade) { expect_made<TerrainOptions>(1, 12); }
 
 TEST_F(GeneratorRanges, DISABLED_SweepHouses) { expect_made<HouseOptions>(101, 500); }
@@ -95,6 +96,7 @@ TEST_F(GeneratorRanges, DISABLED_SweepOffices) { expect_made<OfficeOptions>(101,
 TEST_F(GeneratorRanges, DISABLED_SweepHallways) { expect_made<HallwayOptions>(101, 700); }
 TEST_F(GeneratorRanges, DISABLED_SweepBedrooms) { expect_made<BedroomOptions>(101, 700); }
 TEST_F(GeneratorRanges, DISABLED_SweepTunnels) { expect_made<TunnelOptions>(101, 400); }
+TEST_F(GeneratorRanges, DISABLED_SweepMines) { expect_made<MineOptions>(101, 400); }
 TEST_F(GeneratorRanges, DISABLED_SweepTerrains) { expect_made<TerrainOptions>(101, 400); }
 
 TEST_F(GeneratorRanges, AreSoundInside) {

@@ -64,6 +64,11 @@ class GeneratedPlaces : public GeneratedPlace {
     tunnel.length = 40;
     return tunnel;
   }
+  static MineOptions short_mine() {
+    MineOptions mine;
+    mine.length = 40;
+    return mine;
+  }
   static TerrainOptions small_terrain() {
     TerrainOptions terrain;
     terrain.length = terrain.width = 36;
@@ -155,6 +160,12 @@ TEST_F(GeneratedPlaces, DISABLED_SweepBedroomsOfTwoHundredSeeds) {
 TEST_F(GeneratedPlaces, MakeTunnelsThatAreReachableAndAtRest) {
   expect_sound_seeds(1, 10, kCoarse, short_tunnel());
 }
+TEST_F(GeneratedPlaces, MakeMinesThatAreReachableAndAtRest) {
+  expect_sound_seeds(1, 10, kCoarse, short_mine());
+}
+TEST_F(GeneratedPlaces, DISABLED_SweepMinesOfTwoHundredSeeds) {
+  expect_sound_seeds(1, 200, kCoarse, short_mine());
+}
 TEST_F(GeneratedPlaces, DISABLED_SweepTunnelsOfTwoHundredSeeds) {
   expect_sound_seeds(1, 200, kCoarse, short_tunnel());
 }
@@ -244,6 +255,17 @@ TEST_F(GeneratedPlaces, MakeTheOthersAtTheExtremesOfTheirParameters) {
     tunnel.lamps = high ? 60 : 4;
     tunnel.clutter = tunnel.loose = tunnel.failed = high;
     expect_sound(tunnel, kCoarse, ", tunnel");
+    MineOptions mine;
+    mine.length = high ? 100 : 20;
+    mine.width = high ? 10 : 3;
+    mine.height = high ? 8 : 2.6;
+    mine.curve = high ? 5000 : 40;
+    mine.relief = high ? 0.5 : 0.05;
+    mine.supports = high ? 50 : 1;
+    mine.niches = high ? 12 : 0;
+    mine.lamps = high ? 60 : 4;
+    mine.clutter = mine.loose = mine.failed = high;
+    expect_sound(mine, kCoarse, ", mine");
   }
 }
 
