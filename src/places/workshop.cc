@@ -340,9 +340,8 @@ std::string Workshop::bedrock() {
 }
 
 std::string Workshop::blasted_rock() {
-  Look look =
-      patterned("blasted_rock", noise({0.050, 0.045, 0.040}, {0.165, 0.152, 0.136}, 0.35, 0.03,
-                                      0.85, "turbulence"));
+  Look look = patterned("blasted_rock", noise({0.050, 0.045, 0.040}, {0.165, 0.152, 0.136}, 0.35,
+                                              0.03, 0.85, "turbulence"));
   PatternOptions dust;
   dust.kind = "dirt";
   dust.color_b = Vec3{0.210, 0.192, 0.168};

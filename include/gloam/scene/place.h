@@ -107,8 +107,8 @@ struct TunnelOptions {
 };
 
 /// [environment.mine]: a drift of a mine, blasted through rock, along x and gently curved, with
-/// niches on both sides. No daylight enters it. The world's origin is on the floor, a quarter of the
-/// length from the western face.
+/// niches on both sides. No daylight enters it. The world's origin is on the floor, a quarter of
+/// the length from the western face.
 struct MineOptions {
   uint64_t seed = 1;     ///< seed of the mine
   double length = 80;    ///< [m], 20 … 400
