@@ -9,7 +9,6 @@ import gloam
 import pytest
 from gloam.navigation.benchmark.episode import EpisodeSpec, run_episode
 from gloam.navigation.benchmark.places import Course
-from gloam.navigation.planners.goal_image import own_weights
 
 pytest.importorskip("openvino")  # of the walking policy
 
@@ -34,3 +33,10 @@ def test_a_camera_sees_nothing_in_darkness(course: Course) -> None:
 
     with gloam.Simulation(world_of("house", "dark")) as sim:
         assert sim.cameras[CAMERA].render(("rgb",), width=85, height=64, tier="interactive").rgb.max() <= 1
+
+
+def test_smoke_and_clutter_stop_the_own_policy(course: Course, tmp_path: Path) -> None:
+    """The paper's claim for planners with cameras: success and SC fall with adversity. Start and goal are the same."""
+    clear, major = (episode(course, tmp_path, "gloam", level) for level in ("none", "major"))
+    assert clear["outcome"] == "success" and clear["collisions"] == 0  # SC 1
+    assert major["outcome"] != "success"
