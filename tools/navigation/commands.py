@@ -136,7 +136,7 @@ def _add_bench(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     option("--planners", help="names, separated by commas; default: straight,replay,lidar,route, and gloam if its network exists")
     option("--set", action="append", default=[], metavar="PLANNER.OPTION=VALUE", help="option of a planner, see below; repeatable")
     option("--plugin", action="append", default=[], help="Python file or module that registers planners; repeatable")
-    option("--scenes", default="house,warehouse", help="also office, tunnel and terrain; default: %(default)s")
+    option("--scenes", default="house,warehouse", help="also office, tunnel, mine and terrain; default: %(default)s")
     option("--levels", default="none,minor,major", help="also dark; default: %(default)s")
     option("--n", type=int, default=100, help="episodes of each planner, scene and level; default: %(default)s")
     option("--seed", type=int, default=1, help="default: %(default)s")

@@ -52,7 +52,7 @@ def _add_bench(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     )
     option = command.add_argument
     option("--methods", default="odometry_mono,odometry_rgbd", help="names of `gloam slam methods`, or TOML files; default: %(default)s")
-    option("--scenes", default="house,warehouse", help="also office, tunnel and terrain; default: %(default)s")
+    option("--scenes", default="house,warehouse", help="also office, tunnel, mine and terrain; default: %(default)s")
     option("--levels", default="none,minor,major", help="also dark; default: %(default)s")
     option("--runs", "--n", type=int, default=10, help="of each method, scene and level; default: %(default)s")
     option("--seed", type=int, default=1, help="default: %(default)s")

@@ -35,6 +35,7 @@ PLACES: dict[str, dict[str, Any]] = {
     "warehouse": {"warehouse": {"seed": 2, "length": 30, "width": 20}},
     "office": {"office": {"seed": 2}},
     "tunnel": {"tunnel": {"seed": 1}},
+    "mine": {"mine": {"seed": 1}},
     "terrain": {"terrain": {"seed": 1, "length": 50, "width": 40}},
 }
 
