@@ -124,9 +124,9 @@ Status ExposureMeter::meter(const Snapshot& snapshot) {
   const auto picture = probe_->capture(*shared_->renderer, shared_->turns, poses_, poses_,
                                        timing_.last_at_or_before(snapshot.step()));
   const Intrinsics& k = picture->intrinsics;
-  automatic_.meter(metered_luminance(picture->radiance.data(), k.width, k.height,
-                                     automatic_.options().metering == "center"),
-                   snapshot.time());
+  const AutoExposureOptions& options = automatic_.options();
+  const MeterImage image{k.width, k.height, options.metering == "center", saturation_of(options)};
+  automatic_.meter(metered_luminance(picture->radiance.data(), image), snapshot.time());
   const std::lock_guard lock(mutex_);
   const int64_t instant = instant_of(snapshot.step());
   if (!values_.empty() && instant <= values_.rbegin()->first)

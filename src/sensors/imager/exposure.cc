@@ -2,8 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <vector>
 
 namespace gloam {
+namespace {
+
+constexpr double kMeterConstant = 12.5;  // K of ISO 2720 [cd s/(m² lx)]
+
+}  // namespace
 
 double Exposure::ev100() const { return std::log2(f_number * f_number / shutter * 100 / iso); }
 
@@ -21,7 +28,7 @@ Exposure program_exposure(double ev100, double f_number, const AutoExposureOptio
 }
 
 void AutoExposure::meter(double luminance, double time) {
-  constexpr double kMeterConstant = 12.5, kDarkest = 1e-6;  // [cd/m²]
+  constexpr double kDarkest = 1e-6;  // [cd/m²]
   const double target = std::clamp(
       std::log2(std::max(luminance, kDarkest) * 100 / kMeterConstant) - options_.compensation,
       options_.min_ev100, options_.max_ev100);
@@ -34,22 +41,44 @@ void AutoExposure::meter(double luminance, double time) {
   time_ = time;
 }
 
-double metered_luminance(const float* radiance, int width, int height, bool center_weighted) {
-  double sum = 0, weights = 0;
-  for (int y = 0; y < height; ++y) {
-    for (int x = 0; x < width; ++x, radiance += 3) {
-      const double dx = (x + 0.5 - 0.5 * width) / (0.25 * width),
-                   dy = (y + 0.5 - 0.5 * height) / (0.25 * width);
-      const double weight = center_weighted ? std::exp(-0.5 * (dx * dx + dy * dy)) : 1;
-      const double light = 0.2126 * static_cast<double>(radiance[0]) +
+double saturation_of(const AutoExposureOptions& options) {
+  constexpr double kTopOfScale = 1.2;  // [cd/m²] at EV 0
+  return kTopOfScale * 100 / kMeterConstant * std::exp2(-options.compensation);
+}
+
+double metered_luminance(const float* radiance, const MeterImage& image) {
+  std::vector<double> light, weight;
+  for (int y = 0; y < image.height; ++y) {
+    for (int x = 0; x < image.width; ++x, radiance += 3) {
+      const double dx = (x + 0.5 - 0.5 * image.width) / (0.25 * image.width),
+                   dy = (y + 0.5 - 0.5 * image.height) / (0.25 * image.width);
+      const double value = 0.2126 * static_cast<double>(radiance[0]) +
                            0.7152 * static_cast<double>(radiance[1]) +
                            0.0722 * static_cast<double>(radiance[2]);
-      if (!std::isfinite(light)) continue;
-      sum += weight * light;
-      weights += weight;
+      if (!std::isfinite(value)) continue;
+      light.push_back(value);
+      weight.push_back(image.center_weighted ? std::exp(-0.5 * (dx * dx + dy * dy)) : 1);
     }
   }
-  return weights > 0 ? sum / weights : 0;
+  const auto mean_below = [&](double most) {
+    double sum = 0, weights = 0;
+    for (size_t i = 0; i < light.size(); ++i) {
+      sum += weight[i] * std::min(light[i], most);
+      weights += weight[i];
+    }
+    return weights > 0 ? sum / weights : 0;
+  };
+  // The mean falls from step to step to the one whose own exposure saturates as it supposes.
+  constexpr double kTolerance = 1e-5;
+  constexpr int kMostSteps = 200;
+  double mean = mean_below(std::numeric_limits<double>::infinity());
+  for (int k = 0; k < kMostSteps; ++k) {
+    const double next = mean_below(image.saturation * mean);
+    const bool settled = next >= (1 - kTolerance) * mean;
+    mean = next;
+    if (settled) break;
+  }
+  return mean;
 }
 
 }  // namespace gloam

@@ -42,7 +42,19 @@ class AutoExposure {
   double ev100_ = 0, time_ = 0;
 };
 
-/// Metered luminance of a small picture [cd/m²]: radiance (height x width x 3), linear Rec. 709.
-double metered_luminance(const float* radiance, int width, int height, bool center_weighted);
+/// Luminance at which an image saturates, over the metered one that exposes it.
+double saturation_of(const AutoExposureOptions& options);
+
+/// A small picture for metering. saturation: of saturation_of().
+struct MeterImage {
+  int width = 0, height = 0;
+  bool center_weighted = false;  ///< by a Gaussian of a quarter of the width
+  double saturation = 0;
+};
+
+/// Metered luminance [cd/m²] of radiance (height x width x 3), linear Rec. 709: the mean of an
+/// image that this luminance itself exposes. Pixels above its scale count as saturated, as in a
+/// camera that meters its own images, so a window in view does not darken the room.
+double metered_luminance(const float* radiance, const MeterImage& image);
 
 }  // namespace gloam

@@ -90,13 +90,32 @@ TEST(AutoExposure, ApproachesTheMetersValueWithItsTimeConstant) {
 
 TEST(AutoExposure, MetersTheMeanOrTheMiddle) {
   std::vector<float> light(3 * 32 * 24, 10);
-  EXPECT_NEAR(metered_luminance(light.data(), 32, 24, false), 10, 1e-4);
+  const MeterImage average{32, 24, false, saturation_of({})},
+      center{32, 24, true, average.saturation};
+  EXPECT_NEAR(metered_luminance(light.data(), average), 10, 1e-4);
   for (int y = 10; y < 14; ++y) {
     for (int x = 14; x < 18; ++x) std::fill_n(light.begin() + 3 * (32 * y + x), 3, 100.0f);
   }
-  const double average = metered_luminance(light.data(), 32, 24, false);
-  EXPECT_NEAR(average, 10 + 90.0 * 16 / 768, 1e-3);
-  EXPECT_GT(metered_luminance(light.data(), 32, 24, true), 1.8 * average - 10);
+  const double mean = metered_luminance(light.data(), average);
+  EXPECT_NEAR(mean, 10 + 90.0 * 16 / 768, 1e-3);
+  EXPECT_GT(metered_luminance(light.data(), center), 1.8 * mean - 10);
+}
+
+TEST(AutoExposure, MetersAWindowAsTheSaturatedPixelsOfItsOwnImage) {
+  // A quarter of the image is a window, 100 or 10,000 times as bright as the room.
+  for (const double window : {1e3, 1e5}) {
+    std::vector<float> light(3 * 32 * 24, 10);
+    std::fill_n(light.begin(), light.size() / 4, static_cast<float>(window));
+    const AutoExposureOptions options{.compensation = 1.5};
+    const double saturation = saturation_of(options);
+    const double mean = metered_luminance(light.data(), {32, 24, false, saturation});
+    // The fixed point: mean = 10 * 3/4 + saturation * mean / 4.
+    EXPECT_NEAR(mean, 7.5 / (1 - saturation / 4), 0.2) << window;
+    AutoExposure automatic(options);
+    automatic.meter(mean, 0);
+    EXPECT_NEAR(1.2 * std::exp2(automatic.ev100()), saturation * mean, 1e-6 * mean)
+        << "saturation is the top of the scale";
+  }
 }
 
 TEST(Vignetting, IsTheFourthPowerOfTheCosineOfTheLenssRay) {
