@@ -75,7 +75,7 @@ def test_a_strangers_folder_is_never_taken_or_removed(tmp_path: Path) -> None:
 
 def test_one_call_at_a_time(tmp_path: Path) -> None:
     first = _manifest(tmp_path, [1])
-    with pytest.raises(gloam.UsageError, match="another call is using"):
+    with pytest.raises(gloam.UsageError, match="is in use by another process"):
         _manifest(tmp_path, [1])
     first.close()
     _manifest(tmp_path, [1]).close()

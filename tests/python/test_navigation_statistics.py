@@ -13,8 +13,11 @@ import gloam
 import navigation_recompute
 import numpy as np
 import pytest
+from gloam.experiments import statistics
+from gloam.experiments import words as shared
+from gloam.experiments.tables import write_csv
 from gloam.navigation.benchmark import Results, Summary, load_results, summarize
-from gloam.navigation.benchmark import paper, statistics, tables, words
+from gloam.navigation.benchmark import paper, tables, words
 from gloam.navigation.benchmark.findings import findings
 from navigation_folder import episode, write_episode, write_folder, write_request
 
@@ -125,7 +128,7 @@ def test_metrics_of_known_episodes(tmp_path: Path) -> None:
 def test_cells_without_success_with_one_episode_and_at_the_goal(tmp_path: Path) -> None:
     _, summary = small(tmp_path / "none", [FAIL, FAIL])
     cell = summary.cells[0]
-    assert cell.time.value is None and (cell.sc.value, cell.sc.low) == (0.0, 0.0) and words.interval(cell.sc) == "all equal"
+    assert cell.time.value is None and (cell.sc.value, cell.sc.low) == (0.0, 0.0) and shared.interval(cell.sc) == "all equal"
     assert cell.success.high == pytest.approx(0.6576, abs=1e-4)
     _, summary = small(tmp_path / "one", [{"shortest": 0.0, "path_length": 0.0}])
     cell = summary.cells[0]
@@ -170,7 +173,7 @@ def test_words_give_the_direction(tmp_path: Path) -> None:
     ]
     assert words.power_note([test]) == ""  # 2 tests, p down to 2 / 2^12
     assert words.power_note([test] * 60).endswith("At least 13 episodes per cell are needed.")
-    assert words.number(-0.001) == "0.00" and words.number(-0.2, 1) == "−0.2" and words.percent(0.0004) == "< 0.1 %"
+    assert shared.number(-0.001) == "0.00" and shared.number(-0.2, 1) == "−0.2" and shared.percent(0.0004) == "< 0.1 %"
 
 
 def test_different_tasks_of_a_pair_are_reported(tmp_path: Path) -> None:
@@ -246,7 +249,7 @@ def test_csv_and_latex(tmp_path: Path) -> None:
     request = write_folder(tmp_path, missing=2, planners=["route", hostile], scenes=["house"], levels=["none", "major"], episodes=4)
     results = load_results(tmp_path)
     summary = summarize(results)
-    tables.write_csv(tmp_path / "r.csv", tables.episode_rows(results))
+    write_csv(tmp_path / "r.csv", tables.episode_rows(results))
     with open(tmp_path / "r.csv", newline="") as file:
         rows = list(csv.DictReader(file))
     assert len(rows) == 2 * 2 * request["episodes"] and sum(row["status"] == "pending" for row in rows) == 2

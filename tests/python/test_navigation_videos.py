@@ -11,9 +11,9 @@ import gloam
 import numpy as np
 import pytest
 from gloam.navigation.benchmark import load_results, write_report
-from gloam.navigation.benchmark.files import locked
+from gloam.experiments.files import locked
 from gloam.navigation.benchmark.floor_plan import plan_of
-from gloam.navigation.benchmark.movie import write_movie
+from gloam.experiments.movie import write_movie
 from gloam.navigation.benchmark.route_view import RouteView
 from gloam.navigation.benchmark.videos import render_videos
 from gloam.navigation.grid import Grid

@@ -167,7 +167,7 @@ def test_a_killed_comparison_continues(tmp_path: Path, network: Path, folders: d
 
 
 def test_another_process_in_the_folder(tmp_path: Path, network: Path, folders: dict[str, Path]) -> None:
-    from gloam.navigation.benchmark.files import locked
+    from gloam.experiments.files import locked
 
     with locked(tmp_path), pytest.raises(gloam.UsageError, match="in use"):
         compare(tmp_path, network, folders)

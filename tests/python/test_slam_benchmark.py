@@ -125,7 +125,7 @@ def test_a_repeated_call_does_what_is_missing(request_: Request, out: Path, tmp_
     assert not list(gone.parent.glob(".*"))
     more = run(replace(request_, runs=3), copy)
     assert len(more) == 18 and all(old in more for old in first)
-    with pytest.raises(gloam.UsageError, match="another rate"):
+    with pytest.raises(gloam.UsageError, match=r"another benchmark \(rate 5.* and 10 differ"):
         run(replace(request_, rate=10), copy)
 
 
@@ -154,7 +154,7 @@ def test_the_page_has_the_numbers_of_the_raw_files(out: Path) -> None:
     with (out / "cells.csv").open(newline="") as file:
         cells = {(row["method"], row["level"]): row for row in csv.DictReader(file)}
     cell = cells["noisy_truth", "none"]
-    assert f'data-cell="noisy_truth/house/none" data-measure="ate_sim3"><b>{float(cell["ate_sim3"]):.2f}</b>' in page
+    assert f'data-cell="noisy_truth/house/none" data-metric="ate_sim3"><b>{float(cell["ate_sim3"]):.2f}</b>' in page
     assert "too much smoke" in page and "http://" not in page.replace("http://www.w3.org", "") and "<script" not in page
     assert cells["fails", "minor"]["ate_se3"] == "" and cells["fails", "minor"]["failures"] == "2"
 

@@ -162,9 +162,9 @@ def _bench(given: argparse.Namespace) -> int:
 
 
 def _run(given: argparse.Namespace, request: Request, out: Path) -> int:
+    from gloam.experiments.request import machine_name
     from gloam.navigation.benchmark.cost import cost_lines
     from gloam.navigation.benchmark.report import write_report
-    from gloam.navigation.benchmark.request import machine_name
     from gloam.navigation.benchmark.runner import Workers, run
     from gloam.navigation.benchmark.tiers import FOLDER, tier_lines, tier_request, write_tiers
     from gloam.navigation.benchmark.videos import render_videos

@@ -15,7 +15,7 @@ import os
 import shutil
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, TextIO
 
 from ..errors import InputError, IoError, UsageError
 
@@ -61,6 +61,22 @@ def publish(part: Path, target: Path) -> bool:
     return True
 
 
+def lock(folder: Path) -> TextIO:
+    """Makes a results folder if it is missing, and takes its lock, until the returned file is closed. Errors: UsageError if
+    another process has it; IoError."""
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        file = (folder / ".lock").open("w", encoding="utf-8")
+    except OSError as error:
+        raise IoError(f"cannot write into the folder: {error.strerror}", str(folder)) from None
+    try:
+        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except OSError:
+        file.close()
+        raise UsageError(f"{folder} is in use by another process") from None
+    return file
+
+
 class Manifest:
     """Tasks of one folder, by their seeds. Raises UsageError: the folder contains tasks of another request, or
     another call is working on it."""
@@ -72,16 +88,7 @@ class Manifest:
         self.errors: dict[int, str] = {}
         self._request = dict(request)
         self._print = hashlib.sha256(json.dumps([kind, self._request], sort_keys=True).encode()).hexdigest()
-        try:
-            out.mkdir(parents=True, exist_ok=True)
-            self._lock = (out / ".lock").open("w", encoding="utf-8")
-        except OSError as error:
-            raise IoError(f"the folder cannot be created: {error.strerror}", str(out)) from None
-        try:
-            fcntl.flock(self._lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except OSError:
-            self._lock.close()
-            raise UsageError(f"another call is using {out}") from None
+        self._lock = lock(out)
         try:
             self._open(overwrite)
         except BaseException:

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from PIL import Image
 
 import gloam
-from gloam.navigation.benchmark.files import locked, replace_file
+from gloam.experiments.files import locked, replace_file
 
 from . import edges
 from .camera import Array, Lens

@@ -13,7 +13,7 @@ import numpy as np
 
 import gloam
 from gloam import _core, _toml
-from gloam.navigation.benchmark.files import replace_file
+from gloam.experiments.files import replace_file
 
 from .camera import Array
 

@@ -19,7 +19,7 @@ import numpy as np
 from PIL import Image
 
 import gloam
-from gloam.navigation.benchmark.files import replace_file
+from gloam.experiments.files import replace_file
 
 from .camera import OPTICAL, Lens
 from .edges import Picture

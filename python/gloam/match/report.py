@@ -12,7 +12,7 @@ import numpy as np
 from PIL import Image
 
 import gloam
-from gloam.navigation.benchmark.files import replace_file
+from gloam.experiments.files import replace_file
 
 from .edges import Picture
 from .page import render_template

@@ -9,7 +9,7 @@ from typing import Any
 
 import gloam
 from gloam import _toml
-from gloam.navigation.benchmark.files import replace_file
+from gloam.experiments.files import replace_file
 
 from .exposure import Exposure, shutter_of
 from .solve import Solution

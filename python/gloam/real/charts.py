@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from gloam.navigation.benchmark.charts import INK, PLANNER_COLORS, Chart
+from gloam.experiments.charts import INK, PALETTE, Chart
 
 from .appearance import GRADIENT_BINS, LIGHTNESS_BINS
 from .compare import REAL, Comparison, features_file
@@ -17,7 +17,7 @@ _MARKERS = "osD^vPX*"
 
 
 def _color(name: str, k: int) -> str:
-    return INK if name == REAL else PLANNER_COLORS[(k - 1) % len(PLANNER_COLORS)]
+    return INK if name == REAL else PALETTE[(k - 1) % len(PALETTE)]
 
 
 def histogram_chart(found: Comparison) -> str:

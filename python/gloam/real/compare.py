@@ -18,8 +18,8 @@ from numpy.typing import NDArray
 
 import gloam
 from gloam._distribute.manifest import write_json
-from gloam.navigation.benchmark.files import locked, replace_file
-from gloam.navigation.benchmark.request import machine_name
+from gloam.experiments.files import locked, replace_file
+from gloam.experiments.request import machine_name
 
 from .cam import eigen_cam, grad_cam
 from .images import Listing, list_images, pair_names

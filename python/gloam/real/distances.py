@@ -9,7 +9,7 @@ from typing import TypeVar
 
 import numpy as np
 
-from gloam.navigation.benchmark.statistics import Estimate
+from gloam.experiments.statistics import Estimate
 
 from .network import Floats
 

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from gloam.navigation.benchmark.optional import require
+from gloam.experiments.optional import require
 
 from .cam import enlarged, normalised
 from .compare import REAL, Comparison, class_of, features_file, response

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 import gloam
-from gloam.navigation.benchmark.optional import require
+from gloam.experiments.optional import require
 
 Image = NDArray[np.uint8]  # (height, width, 3), sRGB
 Fit = Literal["crop", "stretch", "pad"]

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from gloam.navigation.benchmark.optional import require
+from gloam.experiments.optional import require
 
 from .appearance import grey_of
 from .flip import Array, flip

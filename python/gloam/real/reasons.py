@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from gloam.navigation.benchmark.statistics import Estimate
+from gloam.experiments.statistics import Estimate
 
 from .distances import GROUPS, cliff_delta, group_of, jackknife
 from .network import Floats

@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-import base64
 import json
 from pathlib import Path
 from typing import Any
 
-from gloam.navigation.benchmark import words
-from gloam.navigation.benchmark.files import replace_file
-from gloam.navigation.benchmark.optional import require
-from gloam.navigation.benchmark.statistics import Estimate
+from gloam.experiments import words
+from gloam.experiments.charts import image
+from gloam.experiments.files import replace_file
+from gloam.experiments.optional import require
+from gloam.experiments.page import PAGE, render_page
+from gloam.experiments.statistics import Estimate
 
 from . import paper
 from .charts import feature_chart, histogram_chart
@@ -21,7 +22,6 @@ from .reasons import Difference, differences
 from .results import write_tables
 from .summary import HALVES, Line, summarize
 
-PAGE = "report.html"
 _FEW = 20  # images, below which the page warns
 _MOST_LEFT_OUT = 30  # files that are named on the page
 
@@ -36,38 +36,34 @@ def write_report(found: Comparison) -> list[Path]:
     lines, pairs = summarize(found)
     reasons = {name: differences(found.sets[REAL], found.sets[name]) for name in found.request.others}
     files = write_tables(found, lines, pairs, reasons)
-    page = render_page(found, lines, pairs, reasons)
+    page = page_of(found, lines, pairs, reasons)
     return [*files, replace_file(found.out / PAGE, lambda path: path.write_text(page, encoding="utf-8"))]
 
 
-def render_page(found: Comparison, lines: list[Line], pairs: list[dict[str, Any]], reasons: dict[str, list[Difference]]) -> str:
-    """The page as HTML without external requests. All names are escaped."""
-    jinja2 = require("jinja2")
-    environment = jinja2.Environment(autoescape=True, undefined=jinja2.StrictUndefined, trim_blocks=True, lstrip_blocks=True)
-    environment.filters |= {"number": words.number, "interval": words.interval, "percent": words.percent, "shown": shown}
-    template = environment.from_string(Path(__file__).with_name("report.html").read_text(encoding="utf-8"))
+def page_of(found: Comparison, lines: list[Line], pairs: list[dict[str, Any]], reasons: dict[str, list[Difference]]) -> str:
+    """The page as HTML without external requests."""
     first = next(iter(found.request.others))
-    text: str = template.render(
-        request=json.loads((found.out / REQUEST).read_text(encoding="utf-8")),
-        found=found,
-        first=first,
-        tables=_tables(lines, found),
-        likeness=_likeness(lines),
-        has_pairs=bool(found.pairs),
-        pair_count={name: len(every) for name, every in found.pairs.items()},
-        uncompared=sorted({row["reason"] for row in pairs if row["reason"]}),
-        findings=_findings(found, lines, reasons[first], first),
-        reasons=reasons,
-        hints=_hints(found),
-        left_out={name: (one.left_out[:_MOST_LEFT_OUT], len(one.left_out)) for name, one in found.sets.items() if one.left_out},
-        histograms=_image(histogram_chart(found)),
-        scatter={network.settings.name: _image(feature_chart(found, network)) for network in found.networks},
-        examples=make_examples(found, pairs),
-        paper=paper,
-        HALVES=HALVES,
-        REAL=REAL,
-    )
-    return text
+    values = {
+        "request": json.loads((found.out / REQUEST).read_text(encoding="utf-8")),
+        "found": found,
+        "first": first,
+        "tables": _tables(lines, found),
+        "likeness": _likeness(lines),
+        "has_pairs": bool(found.pairs),
+        "pair_count": {name: len(every) for name, every in found.pairs.items()},
+        "uncompared": sorted({row["reason"] for row in pairs if row["reason"]}),
+        "findings": _findings(found, lines, reasons[first], first),
+        "reasons": reasons,
+        "hints": _hints(found),
+        "left_out": {name: (one.left_out[:_MOST_LEFT_OUT], len(one.left_out)) for name, one in found.sets.items() if one.left_out},
+        "histograms": image(histogram_chart(found)),
+        "scatter": {network.settings.name: image(feature_chart(found, network)) for network in found.networks},
+        "examples": make_examples(found, pairs),
+        "paper": paper,
+        "HALVES": HALVES,
+        "REAL": REAL,
+    }
+    return render_page(Path(__file__).with_name("report.html"), values, {"shown": shown})
 
 
 def _tables(lines: list[Line], found: Comparison) -> dict[str, list[Line]]:
@@ -148,7 +144,3 @@ def _hints(found: Comparison) -> list[str]:
         for name, count in alone.items()
     ]
     return hints
-
-
-def _image(svg: str) -> str:
-    return "data:image/svg+xml;base64," + base64.b64encode(svg.encode()).decode()

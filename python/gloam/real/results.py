@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 import json
 import math
 from collections.abc import Iterable, Iterator
@@ -10,14 +9,13 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
-from gloam.navigation.benchmark.files import replace_file
+from gloam.experiments.files import replace_file
+from gloam.experiments.tables import Row, estimate_columns, write_csv
 
 from .compare import REAL, Comparison
 from .images import shown
 from .reasons import STATISTICS, Difference
 from .summary import Line
-
-Row = dict[str, Any]
 
 
 def write_tables(found: Comparison, lines: list[Line], pairs: list[Row], reasons: dict[str, list[Difference]]) -> list[Path]:
@@ -69,7 +67,7 @@ def _named(row: Row) -> Row:
 def _line_row(line: Line) -> Row:
     row: Row = {"network": line.network, "set": line.name, "images": line.count, "real_images": line.real_count}
     for key, estimate in line.measures.items():
-        row |= {key: estimate.value, f"{key}_low": estimate.low, f"{key}_high": estimate.high}
+        row |= estimate_columns(key, estimate)
     return row
 
 
@@ -91,11 +89,5 @@ def _finite(value: Any) -> Any:
 
 
 def _write_csv(path: Path, names: list[str], rows: Iterable[Row]) -> Path:
-    def write(part: Path) -> None:
-        with part.open("w", encoding="utf-8", newline="") as file:
-            writer = csv.DictWriter(file, fieldnames=names, lineterminator="\n", restval="")
-            writer.writeheader()
-            for row in rows:
-                writer.writerow({key: "" if isinstance(v, float) and math.isnan(v) else v for key, v in row.items()})
-
-    return replace_file(path, write)
+    cleaned = [{key: None if isinstance(v, float) and math.isnan(v) else v for key, v in row.items()} for row in rows]
+    return replace_file(path, lambda part: write_csv(part, cleaned, names))

@@ -11,7 +11,7 @@ from typing import Any, TypeVar
 from numpy.typing import NDArray
 
 import gloam
-from gloam.navigation.benchmark.words import duration
+from gloam.experiments.words import Remaining
 
 from . import appearance
 from .images import Image, Listing, UnusableImage, content_hash, decode, read_bytes
@@ -50,11 +50,11 @@ class ImageSet:
 def watched(items: Iterable[Item], what: str, say: Tell) -> Iterator[Item]:
     """The items, with reports of the progress and of the time that is left."""
     every = list(items)
-    begin = last = time.monotonic()
+    last, remaining = time.monotonic(), Remaining(len(every))
     for done, item in enumerate(every):
         now = time.monotonic()
         if done and now - last > _REPORT_EVERY:
-            say(f"{what}: {done} of {len(every)}, {duration((now - begin) / done * (len(every) - done))} left")
+            say(f"{what}: {done} of {len(every)}{remaining.after(done)}")
             last = now
         yield item
 

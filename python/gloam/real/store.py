@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 import gloam
-from gloam.navigation.benchmark.files import replace_file
+from gloam.experiments.files import replace_file
 
 Arrays = dict[str, NDArray[Any]]
 

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from gloam.navigation.benchmark.statistics import Estimate, bootstrap_mean, generator
+from gloam.experiments.statistics import Estimate, bootstrap_mean, generator
 
 from .cam import intersection_over_union, overlap
 from .compare import REAL, Comparison, Pair, class_of, features_file, likeness, response

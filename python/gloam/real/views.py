@@ -13,8 +13,8 @@ import numpy as np
 
 import gloam
 from gloam._distribute.manifest import write_json
-from gloam.navigation.benchmark.files import locked, replace_file
-from gloam.navigation.benchmark.optional import require
+from gloam.experiments.files import locked, replace_file
+from gloam.experiments.optional import require
 from gloam.navigation.free_space import free_space
 from gloam.navigation.grid import Grid
 

@@ -9,11 +9,8 @@ from __future__ import annotations
 import json
 import shutil
 import subprocess
-import time
-import uuid
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor, as_completed
-from contextlib import contextmanager
 from dataclasses import asdict, dataclass, fields
 from pathlib import Path
 from typing import Any
@@ -21,11 +18,12 @@ from typing import Any
 import numpy as np
 
 import gloam
-from gloam._distribute.manifest import publish, write_json
-from gloam.navigation.benchmark.files import locked
+from gloam._distribute.manifest import write_json
+from gloam.experiments.checks import Fields, read_object
+from gloam.experiments.files import locked, remove_parts, whole
+from gloam.experiments.request import REQUEST_FILE, STAMP, check_known, check_once, keep_request
+from gloam.experiments.words import Remaining
 from gloam.navigation.benchmark.places import ALL_LEVELS, LEVELS, PLACES
-from gloam.navigation.benchmark.request import machine_name
-from gloam.navigation.benchmark.words import duration
 
 from .estimate import read_tum
 from .methods import Method, load_method, opencv_python
@@ -33,9 +31,9 @@ from .run import run_method
 from .sequence import TRUTH, Condition, make_sequence
 from .tour import Tour, record_tour
 
-REQUEST, OUTCOME, VOCABULARY, OVERLAYS = "request.json", "outcome.json", "vocabulary.txt", "overlays"
-_PART = "."  # begins the names of folders that are being written
-_MAY_DIFFER = {"methods", "runs", "machine", "version", "started"}  # between the calls that continue a benchmark
+OUTCOME, VOCABULARY, OVERLAYS = "outcome.json", "vocabulary.txt", "overlays"
+_PARTS = ("tours", "cases/*", "runs/*/*/*")  # parents of folders that appear when they are complete
+_MAY_DIFFER = STAMP | {"methods", "runs"}  # between the calls that continue a benchmark
 Tell = Callable[[str], None]
 
 
@@ -43,9 +41,9 @@ Tell = Callable[[str], None]
 class Request:
     """Runs of a results folder: all methods x scenes x levels x numbers 0 … runs - 1.
 
-    methods: names, or TOML files; levels: of adversity, or scene files that are applied instead; legs, duration [s] (None = all): of the tours; tier, width, height, rate: of the images;
-    limit: time that a run may take, per second of its sequence; vocabulary: file for ORB-SLAM, "" = made from the images in
-    clear air; machine, version, started: text for the page.
+    methods: names, or TOML files; levels: of adversity, or scene files that are applied instead; legs, duration [s] (None = all):
+    of the tours; tier, width, height, rate: of the images; limit: time that a run may take, per second of its sequence;
+    vocabulary: file for ORB-SLAM, "" = made from the images in clear air; machine, version, started: text for the page.
     """
 
     methods: tuple[str, ...]
@@ -67,14 +65,10 @@ class Request:
 
     def check(self) -> None:
         """Errors: NotFoundError for an unknown scene or level; UsageError for names twice and numbers out of range."""
-        levels = [level for level in self.levels if not level.endswith(".toml")]
-        for kind, asked, known in (("scene", self.scenes, tuple(PLACES)), ("level", levels, ALL_LEVELS)):
-            for name in asked:
-                if name not in known:
-                    raise gloam.NotFoundError(f"there is no {kind} '{name}'; there are: {', '.join(known)}")
+        check_known("scene", self.scenes, PLACES)
+        check_known("level", [level for level in self.levels if not level.endswith(".toml")], ALL_LEVELS)
         for kind, asked in (("method", self.methods), ("scene", self.scenes), ("level", self.level_names)):
-            if not asked or len(set(asked)) != len(asked):
-                raise gloam.UsageError(f"name each {kind} once, got {', '.join(asked) or 'none'}")
+            check_once(kind, asked)
         if not 1 <= self.runs <= 10_000 or not 0 <= self.seed < 2**32 or not 1 <= self.legs <= 20:
             raise gloam.UsageError("expected 1 to 10000 runs, 1 to 20 legs, and a seed from 0 to 2^32 - 1")
         if not (16 <= self.width <= 4096 and 16 <= self.height <= 4096 and 0.1 <= self.rate <= 1000 and 0 < self.limit <= 1e6):
@@ -101,24 +95,17 @@ class Request:
             kept.write_bytes(text)
 
     def keep(self, out: Path) -> None:
-        """Writes request.json, or continues the benchmark that the folder holds. Errors: UsageError if that is another one."""
+        """Writes request.json, or continues the benchmark that the folder holds. Errors: UsageError if that is another one;
+        InputError if its file is damaged."""
         self._keep_overlays(out)
-        file = out / REQUEST
-        known: dict[str, Any] = json.loads(file.read_text(encoding="utf-8")) if file.is_file() else {}
-        mine = json.loads(json.dumps({**asdict(self), "levels": self.level_names}))
-        for field in fields(self):
-            if known and field.name not in _MAY_DIFFER and known.get(field.name) != mine[field.name]:
-                raise gloam.UsageError(
-                    f"{out} holds a benchmark with another {field.name}: {known.get(field.name)}, not {mine[field.name]}",
-                    hint="choose another folder",
-                )
-        if known:
-            mine |= {"methods": list(dict.fromkeys([*known["methods"], *self.methods])), "runs": max(self.runs, known["runs"])}
-            mine["started"] = known["started"]
-        else:
-            mine["started"] = time.strftime("%Y-%m-%d")
-        mine |= {"machine": machine_name(), "version": gloam.__version__}
-        write_json(file, mine)
+        file = out / REQUEST_FILE
+        mine: dict[str, Any] = json.loads(json.dumps({**asdict(self), "levels": self.level_names}))
+        known = read_object(file) if file.is_file() else mine
+        kept = Fields(known, file)
+        names = [field.name for field in fields(self) if field.name not in _MAY_DIFFER]
+        different = [f"{name} {known.get(name)} and {mine[name]}" for name in names if known.get(name) != mine[name]]
+        mine |= {"methods": list(dict.fromkeys([*kept.value("methods"), *self.methods])), "runs": max(self.runs, kept.integer("runs"))}
+        keep_request(out, mine, different, kept.text("started"))
 
 
 @dataclass(frozen=True)
@@ -149,21 +136,20 @@ def run(request: Request, out: Path, workers: int = 1, tell: Tell | None = None)
         raise gloam.UsageError("two methods have one name")
     for method in methods.values():  # before hours of rendering
         method.words({"sequence": "", "out": "", "truth": "", "seed": "", "vocabulary": ""})
-    out.mkdir(parents=True, exist_ok=True)
     with locked(out):
+        remove_parts(out, *_PARTS)
         request.keep(out)
         _make_cases(request, {method.sensors.removesuffix("_imu") for method in methods.values()}, out, say)
         vocabulary = _vocabulary(request, methods, out, say)
         keys = [Key(m, s, v, n) for n in range(request.runs) for s in request.scenes for v in request.level_names for m in methods]
         missing = [key for key in keys if not _file(out, key).is_file()]
-        begin = time.monotonic()
+        remaining = Remaining(len(missing))
         with ThreadPoolExecutor(workers) as pool:
             futures = {pool.submit(_run, methods[key.method], key, request, vocabulary, out): key for key in missing}
             try:
                 for done, future in enumerate(as_completed(futures), 1):
                     state = future.result()
-                    left = (time.monotonic() - begin) / done * (len(missing) - done)
-                    say(f"{done} of {len(missing)} runs: {futures[future].path} {state}, {duration(left)} left")
+                    say(f"{done} of {len(missing)} runs: {futures[future].path} {state}{remaining.after(done)}")
             except BaseException:
                 pool.shutdown(wait=True, cancel_futures=True)
                 raise
@@ -179,21 +165,6 @@ def case_of(out: Path, scene: str, level: str) -> Path:
     return out / "cases" / scene / level
 
 
-@contextmanager
-def _whole(folder: Path) -> Iterator[Path]:
-    """A new folder that gets the name `folder` when the block ends well."""
-    folder.parent.mkdir(parents=True, exist_ok=True)
-    for old in folder.parent.glob(f"{_PART}{folder.name}.*"):  # of a process that was killed
-        shutil.rmtree(old, ignore_errors=True)
-    part = folder.with_name(f"{_PART}{folder.name}.{uuid.uuid4().hex[:12]}")
-    part.mkdir()
-    try:
-        yield part
-        publish(part, folder)
-    finally:
-        shutil.rmtree(part, ignore_errors=True)
-
-
 _SENSOR_FILES = {"stereo": "right.txt", "lidar": "scans.txt"}  # of sequences that have these sensors
 
 
@@ -202,16 +173,15 @@ def _make_cases(request: Request, sensors: set[str], out: Path, say: Tell) -> No
     camera or the LiDAR get them. A sequence that is made again has the same images."""
     needed = {"exists"} | (set(_SENSOR_FILES) & sensors)
     missing = [(s, v) for s in request.scenes for v in request.level_names if not needed <= _sensors_of(case_of(out, s, v))]
-    begin = time.monotonic()
+    remaining = Remaining(len(missing))
     for done, (scene, level) in enumerate(missing):
         tour = out / "tours" / scene
         if not tour.is_dir():
             say(f"recording a tour of {scene}")
-            with _whole(tour) as part:
+            with whole(tour) as part:
                 length = record_tour(Tour(scene, request.seed, request.legs), part / "tour.mcap")
                 write_json(part / "tour.json", {"length": length})
-        left = f", {duration((time.monotonic() - begin) / done * (len(missing) - done))} left" if done else ""
-        say(f"sequence {done + 1} of {len(missing)}: {scene}, {level}{left}")
+        say(f"sequence {done + 1} of {len(missing)}: {scene}, {level}{remaining.after(done)}")
         case = case_of(out, scene, level)
         has = {kind: kind in needed | _sensors_of(case) for kind in _SENSOR_FILES}
         overlay = out / OVERLAYS / f"{level}.toml"
@@ -219,7 +189,7 @@ def _make_cases(request: Request, sensors: set[str], out: Path, say: Tell) -> No
             level, overlay if overlay.is_file() else None, request.tier, request.width, request.height, request.rate,
             request.duration, has["stereo"], has["lidar"],
         )  # fmt: skip
-        with _whole(case) as part:
+        with whole(case) as part:
             make_sequence(tour / "tour.mcap", condition, part)
             shutil.rmtree(case, ignore_errors=True)
 
@@ -252,7 +222,7 @@ def _vocabulary(request: Request, methods: dict[str, Method], out: Path, say: Te
 def _run(method: Method, key: Key, request: Request, vocabulary: str, out: Path) -> str:
     case = case_of(out, key.scene, key.level).resolve()
     limit = 60.0 + request.limit * float(np.ptp(read_tum(case / TRUTH).times))
-    with _whole((out / "runs" / key.path).resolve()) as part:
+    with whole((out / "runs" / key.path).resolve()) as part:
         values = {"seed": str(request.seed * 1000 + key.number), "vocabulary": vocabulary}
         outcome = run_method(method, case, part, values, limit)
         write_json(part / OUTCOME, outcome.as_dict())

@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 
 import gloam
-from gloam.navigation.benchmark.charts import INK, LEVEL_COLORS, PLANNER_COLORS, Chart
+from gloam.experiments.charts import INK, LEVEL_COLORS, PALETTE, Chart
+from gloam.experiments.optional import require
 from gloam.navigation.benchmark.floor_plan import plan_of
-from gloam.navigation.benchmark.optional import require
 from gloam.navigation.grid import Grid
 
 from .adapters.contract import INITIALIZING, LOST, TRACKED
@@ -48,7 +48,7 @@ def visibility(case: Path) -> Array:
 
 
 def _color(k: int) -> str:
-    return PLANNER_COLORS[k % len(PLANNER_COLORS)]
+    return PALETTE[k % len(PALETTE)]
 
 
 def _panel(axis: Any, plan: Grid | None, out: Path, scene: str, level: str, methods: tuple[str, ...]) -> None:

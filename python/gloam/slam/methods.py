@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any
 
 import gloam
+from gloam.experiments.request import is_folder_name
 
 _ADAPTERS = Path(__file__).with_name("adapters")
 SENSORS = ("mono", "stereo", "rgbd", "mono_imu", "stereo_imu", "rgbd_imu", "lidar")
@@ -131,7 +132,7 @@ def _checked(table: Mapping[str, Any], file: Path) -> Method:
     if unknown := set(table) - _KEYS:
         raise gloam.InputError(f"unknown key '{sorted(unknown)[0]}'; there are: {', '.join(sorted(_KEYS))}", str(file))
     name, sensors, command = table.get("name", file.stem), table.get("sensors"), table.get("command")
-    if not isinstance(name, str) or not re.fullmatch(r"[\w+-][\w.+-]*", name):
+    if not is_folder_name(name):
         raise gloam.InputError(f"the name of a method is also a folder's, which {name!r} cannot be", str(file))
     if sensors not in SENSORS:
         raise gloam.InputError(f"sensors must be one of {', '.join(SENSORS)}, got {sensors!r}", str(file))

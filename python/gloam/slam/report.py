@@ -2,26 +2,27 @@
 
 from __future__ import annotations
 
-import base64
-import csv
 import json
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from gloam.navigation.benchmark import words
-from gloam.navigation.benchmark.files import replace_file
-from gloam.navigation.benchmark.optional import require
+from gloam.experiments import words
+from gloam.experiments.charts import image
+from gloam.experiments.checks import read_object
+from gloam.experiments.page import PAGE, beside_paper, render_page, require_report_packages, write_report_files
+from gloam.experiments.request import REQUEST_FILE
+from gloam.experiments.tables import Row, estimate_columns, write_csv, write_parquet
 from gloam.navigation.benchmark.visibility import KOSCHMIEDER
 
 from . import paper
-from .benchmark import REQUEST, Key, case_of
+from .benchmark import Key, case_of
 from .charts import tracking_chart, trajectory_chart, visibility
 from .methods import load_method
 from .summary import MEASURES, Cell, summarize
 
-PAGE = "report.html"
-Row = dict[str, Any]
+_TEXTS = ("method", "scene", "level", "state", "message")
+_INTEGERS = ("number", "relocalisations", "frames")
 
 
 def write_report(out: Path) -> list[Path]:
@@ -29,19 +30,18 @@ def write_report(out: Path) -> list[Path]:
 
     Errors: gloam.UnsupportedError if matplotlib, jinja2 or pyarrow is missing; gloam.IoError; OSError.
     """
-    for module in ("matplotlib.figure", "jinja2", "pyarrow.parquet"):
-        require(module)
-    request: Row = json.loads((out / REQUEST).read_text(encoding="utf-8"))
+    require_report_packages()
+    request = read_object(out / REQUEST_FILE)
     rows = load_rows(out, request)
     cells = summarize(rows, request["seed"])
     flat = [{**{k: row[k] for k in ("method", "scene", "level", "number", "state", "message", "wall")}, **row["measures"]} for row in rows]
     writers: dict[str, Callable[[Path], Any]] = {
-        "results.csv": lambda path: _write_csv(path, flat),
-        "results.parquet": lambda path: _write_parquet(path, flat),
-        "cells.csv": lambda path: _write_csv(path, [_cell_row(cell) for cell in cells]),
-        PAGE: lambda path: path.write_text(render_page(out, request, cells), encoding="utf-8"),
+        "results.csv": lambda path: write_csv(path, flat),
+        "results.parquet": lambda path: write_parquet(path, flat, _TEXTS, _INTEGERS),
+        "cells.csv": lambda path: write_csv(path, [_cell_row(cell) for cell in cells]),
+        PAGE: lambda path: path.write_text(page_of(out, request, cells), encoding="utf-8"),
     }
-    return [replace_file(out / name, write) for name, write in writers.items()]
+    return write_report_files(out, writers)
 
 
 def load_rows(out: Path, request: Row) -> list[Row]:
@@ -59,26 +59,22 @@ def load_rows(out: Path, request: Row) -> list[Row]:
     return rows
 
 
-def render_page(out: Path, request: Row, cells: list[Cell]) -> str:
-    """The page as HTML without external requests. All names are escaped."""
-    jinja2 = require("jinja2")
-    environment = jinja2.Environment(autoescape=True, undefined=jinja2.StrictUndefined, trim_blocks=True, lstrip_blocks=True)
-    environment.filters |= {"number": words.number, "interval": words.interval, "percent": words.percent}
-    template = environment.from_string(Path(__file__).with_name("report.html").read_text(encoding="utf-8"))
+def page_of(out: Path, request: Row, cells: list[Cell]) -> str:
+    """The page as HTML without external requests."""
     scenes = list(dict.fromkeys(cell.scene for cell in cells))
     levels, methods = tuple(request["levels"]), tuple(request["methods"])
     shown = {scene: tuple(v for v in levels if any((c.scene, c.level) == (scene, v) for c in cells)) for scene in scenes}
-    text: str = template.render(
-        request=request,
-        cells=cells,
-        failed=[cell for cell in cells if cell.failures],
-        visibility={(cell.scene, cell.level): _visibility(out, cell) for cell in cells},
-        trajectories={scene: _image(trajectory_chart(out, scene, shown[scene], methods)) for scene in scenes},
-        tracking={scene: _image(tracking_chart(out, scene, shown[scene], methods)) for scene in scenes},
-        paper=paper,
-        comparison=_comparison(cells),
-    )
-    return text
+    values: Row = {
+        "request": request,
+        "cells": cells,
+        "failed": [cell for cell in cells if cell.failures],
+        "visibility": {(cell.scene, cell.level): _visibility(out, cell) for cell in cells},
+        "trajectories": {scene: image(trajectory_chart(out, scene, shown[scene], methods)) for scene in scenes},
+        "tracking": {scene: image(tracking_chart(out, scene, shown[scene], methods)) for scene in scenes},
+        "paper": paper,
+        "comparison": beside_paper(cells, lambda cell: (cell.scene, cell.level), paper.paper_rows),
+    }
+    return render_page(Path(__file__).with_name("report.html"), values)
 
 
 def _visibility(out: Path, cell: Cell) -> str:
@@ -88,37 +84,8 @@ def _visibility(out: Path, cell: Cell) -> str:
     return "clear" if least > 1e4 else f"{words.number(mean, 1)}, {words.number(least, 1)}"
 
 
-def _comparison(cells: list[Cell]) -> list[tuple[str, str, list[paper.PaperRow], list[Cell]]]:
-    """(scene, level, rows of the paper, our cells) for each scene and level that the paper has too."""
-    pairs = dict.fromkeys((cell.scene, cell.level) for cell in cells)
-    rows = [(s, v, paper.paper_rows(s, v), [c for c in cells if (c.scene, c.level) == (s, v)]) for s, v in pairs]
-    return [row for row in rows if row[2]]
-
-
-def _image(svg: str) -> str:
-    return "data:image/svg+xml;base64," + base64.b64encode(svg.encode()).decode()
-
-
 def _cell_row(cell: Cell) -> Row:
     row: Row = {"method": cell.method, "scene": cell.scene, "level": cell.level, "runs": cell.runs, "failures": cell.failures}
     for name in MEASURES:
-        mean = cell.means[name]
-        row |= {name: mean.value, f"{name}_low": mean.low, f"{name}_high": mean.high, f"{name}_runs": mean.count}
+        row |= {**estimate_columns(name, cell.means[name]), f"{name}_runs": cell.means[name].count}
     return row
-
-
-def _write_csv(path: Path, rows: list[Row]) -> None:
-    with path.open("w", encoding="utf-8", newline="") as file:
-        writer = csv.DictWriter(file, fieldnames=list(rows[0]) if rows else ["method"], lineterminator="\n")
-        writer.writeheader()
-        writer.writerows(rows)
-
-
-def _write_parquet(path: Path, rows: list[Row]) -> None:
-    """Types do not depend on the values, so files of several benchmarks can be joined."""
-    arrow, parquet = require("pyarrow"), require("pyarrow.parquet")
-    texts, integers = {"method", "scene", "level", "state", "message"}, {"number", "relocalisations", "frames"}
-    names = list(rows[0]) if rows else ["method"]
-    kinds = [arrow.string() if name in texts else arrow.int64() if name in integers else arrow.float64() for name in names]
-    schema = arrow.schema(list(zip(names, kinds, strict=True)))
-    parquet.write_table(arrow.Table.from_pylist(rows, schema=schema), path)

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from gloam.navigation.benchmark.statistics import Estimate, bootstrap_mean, generator
+from gloam.experiments.statistics import Estimate, bootstrap_mean, generator
 
 MEASURES = (
     "ate_se3", "ate_sim3", "rpe", "rpe_angle", "coverage", "coverage_printed", "scaled_ate", "scaled_ate_printed",

@@ -1,65 +1,24 @@
-"""Charts of the page as SVG text (matplotlib). Names are drawn verbatim: no part of them is parsed as mathematics."""
+"""Charts of the page as SVG text."""
 
 from __future__ import annotations
 
-import io
 from collections import Counter
 from collections.abc import Sequence
 from typing import Any
 
-from .optional import require
+from gloam.experiments.charts import GRID, INK, LEVEL_COLORS, PALETTE, SOFT, Chart, short
+from gloam.experiments.optional import require
+
 from .request import Request
 from .results import OUTCOMES
 from .summary import CellSummary, Summary
 
-# Okabe and Ito's palette, which people with colour blindness can distinguish.
-PLANNER_COLORS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#6a51a3", "#7f7f7f")
 OUTCOME_COLORS = {
     "success": "#009e73", "collided": "#d55e00", "fell": "#8c2d04", "stuck": "#e69f00", "lost": "#cc79a7",
     "timed_out": "#56b4e9", "error": "#222222", "pending": "#ffffff",
 }  # fmt: skip
-LEVEL_COLORS = ("#9ecae1", "#4292c6", "#08519c", "#08306b", "#000000")
-INK, _SOFT, _GRID = "#222222", "#6b7280", "#e5e7eb"
 _MOST_COLUMNS = 4
 _MOST_OBJECTS = 12
-_SETTINGS = {
-    "text.parse_math": False,
-    "font.size": 9,
-    "axes.spines.top": False,
-    "axes.spines.right": False,
-    "axes.edgecolor": _SOFT,
-    "axes.labelcolor": INK,
-    "xtick.color": _SOFT,
-    "ytick.color": _SOFT,
-    "xtick.labelcolor": INK,
-    "ytick.labelcolor": INK,
-    "axes.titlesize": 10,
-    "axes.titlelocation": "left",
-    "svg.fonttype": "path",
-}
-
-
-class Chart:
-    """A figure and its matplotlib settings, which apply only inside of the `with` block."""
-
-    def __init__(self, width: float, height: float, name: str) -> None:
-        self._context = require("matplotlib").rc_context({**_SETTINGS, "svg.hashsalt": name})
-        self._size = (width, height)
-        self.svg = ""
-
-    def __enter__(self) -> Chart:
-        self._context.__enter__()
-        self.figure = require("matplotlib.figure").Figure(figsize=self._size, layout="constrained")
-        return self
-
-    def __exit__(self, *error: Any) -> None:
-        try:
-            if error[0] is None:
-                file = io.StringIO()
-                self.figure.savefig(file, format="svg", metadata={"Date": None}, dpi=200)
-                self.svg = file.getvalue()
-        finally:
-            self._context.__exit__(*error)
 
 
 def sc_by_level(request: Request, summary: Summary) -> str:
@@ -91,7 +50,7 @@ def _sc_panel(axis: Any, request: Request, summary: Summary, name: tuple[str, st
         if other != planner:
             values = [summary.cell(other, scene, level).sc.value for level in request.levels]
             axis.plot(places, _gaps(values), color="#c4c9d1", linewidth=1, zorder=1)
-    color = PLANNER_COLORS[request.planners.index(planner) % len(PLANNER_COLORS)]
+    color = PALETTE[request.planners.index(planner) % len(PALETTE)]
     cells = [summary.cell(planner, scene, level) for level in request.levels]
     axis.plot(places, _gaps([c.sc.value for c in cells]), color=color, linewidth=1.8, marker="o", markersize=4.5, zorder=3)
     for place, cell in zip(places, cells, strict=True):
@@ -99,12 +58,12 @@ def _sc_panel(axis: Any, request: Request, summary: Summary, name: tuple[str, st
             axis.plot([place, place], [cell.sc.low, cell.sc.high], color=color, linewidth=5, alpha=0.28, zorder=2,
                       solid_capstyle="butt")  # fmt: skip
         if cell.sc.value is None:
-            axis.text(place, 0.5, "no episode", color=_SOFT, ha="center", va="center", rotation=90, fontsize=8)
+            axis.text(place, 0.5, "no episode", color=SOFT, ha="center", va="center", rotation=90, fontsize=8)
     axis.set_title(f"{short(planner, 30)}\n{short(scene, 30)}", color=INK)
     axis.set_xticks(places, [short(level, 12) for level in request.levels])
     axis.set_xlim(-0.4, len(request.levels) - 0.6)
     axis.set_ylim(-0.03, 1.03)
-    axis.grid(axis="y", color=_GRID, linewidth=0.8)
+    axis.grid(axis="y", color=GRID, linewidth=0.8)
     axis.set_axisbelow(True)
 
 
@@ -206,7 +165,7 @@ def _collision_panel(axis: Any, request: Request, cells: Sequence[CellSummary], 
     axis.set_yticks(places, [short(name, 28) for name in bars])
     axis.tick_params(axis="y", length=0)
     axis.set_xlabel("collisions per episode, summed over levels")
-    axis.grid(axis="x", color=_GRID, linewidth=0.8)
+    axis.grid(axis="x", color=GRID, linewidth=0.8)
     axis.set_axisbelow(True)
 
 
@@ -217,8 +176,3 @@ def _level_color(index: int) -> str:
 def _gaps(values: Sequence[float | None]) -> list[float]:
     """Cells without episodes leave a gap in the line."""
     return [float("nan") if value is None else value for value in values]
-
-
-def short(text: str, most: int = 20) -> str:
-    """Long names would leave no room for the chart; the tables have them in full."""
-    return text if len(text) <= most else text[: most - 1] + "…"

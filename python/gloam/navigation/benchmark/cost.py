@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-from .words import duration
+from gloam.experiments.words import duration
 
 
 def cost_lines(results: Sequence[dict[str, Any]], seconds: float, machine: str) -> list[str]:

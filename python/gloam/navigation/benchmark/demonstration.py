@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 import math
-import shutil
-import uuid
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
 import gloam
-from gloam._distribute.manifest import publish
+from gloam.experiments.files import whole
 
 from ..ground import height_at
 from ..topological_map import MapSource, Node, TopologicalMap
@@ -71,10 +69,6 @@ def _free_joint(sim: gloam.Simulation) -> int:
 def map_of(place: str, pair: Pair, folder: Path, tier: str = "interactive") -> TopologicalMap:
     """The map in `folder`, which is made if it is missing."""
     if not folder.is_dir():
-        part = folder.with_name(f".{folder.name}.{uuid.uuid4().hex[:12]}")
-        try:
+        with whole(folder) as part:
             demonstrate(place, pair, tier).save(part)
-            publish(part, folder)
-        finally:
-            shutil.rmtree(part, ignore_errors=True)  # another process was faster
     return TopologicalMap.load(folder)

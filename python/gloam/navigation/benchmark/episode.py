@@ -143,7 +143,7 @@ class Watch:
 
 
 def run_episode(spec: EpisodeSpec, pair: Pair, folder: Path, maps: Path) -> dict[str, Any]:
-    """Runs it and writes episode.json and run.mcap into a new folder. An exception of the planner's creation or reset
+    """Runs it and writes episode.json and run.mcap into a new or empty folder. An exception of the planner's creation or reset
     becomes an episode of outcome "error". Errors: OSError, gloam.Error if a file cannot be written."""
     begin, cpu = time.perf_counter(), _cpu_seconds()
     limit = 10.0 + 2.5 * pair.shortest / TOP_SPEED
@@ -151,7 +151,7 @@ def run_episode(spec: EpisodeSpec, pair: Pair, folder: Path, maps: Path) -> dict
         "planner": spec.planner, "scene": spec.place, "level": spec.level, "episode": spec.number, "seed": spec.pair_seed,
         "start": list(pair.start), "goal": list(pair.goal), "shortest": pair.shortest, "limit": limit, "tier": spec.tier,
     }  # fmt: skip
-    folder.mkdir(parents=True)
+    folder.mkdir(parents=True, exist_ok=True)
     try:
         result |= _drive(spec, pair, folder, maps, limit)
     except Exception as error:  # of anybody's planner

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from gloam.experiments.words import count, interval, number
+
 from .results import Results
 from .summary import CellSummary, Summary
-from .words import count, interval, is_clear, number, power_note
+from .words import power_note
 
 
 def findings(results: Results, summary: Summary) -> list[str]:
@@ -60,7 +62,7 @@ def _reliability(summary: Summary) -> list[str]:
         if tests and power_note(tests):
             weak.append(subject)
         elif tests:
-            clear = sum(map(is_clear, tests))
+            clear = sum(test.is_clear for test in tests)
             shows = f"{clear or 'None'} of {count(len(tests), 'comparison')} {subject} {'show' if clear > 1 else 'shows'}"
             sentences.append(f"{shows} a clear difference (Holm-adjusted p < 0.05).")
     return sentences + ([f"There are too few episodes for clear differences {' and '.join(weak)}."] if weak else [])

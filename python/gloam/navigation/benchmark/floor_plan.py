@@ -7,10 +7,10 @@ from pathlib import Path
 import numpy as np
 
 from gloam.errors import InputError
+from gloam.experiments.files import replace_file
 
 from ..free_space import free_space, robot_bodies
 from ..grid import Grid
-from .files import replace_file
 from .places import PLACES, ROBOT, world_of
 
 _CELL = 0.05  # [m]

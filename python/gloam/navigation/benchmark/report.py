@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import base64
 import sys
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -12,18 +11,17 @@ from typing import Any
 from urllib.parse import quote
 
 from gloam.errors import Error
+from gloam.experiments.charts import image
+from gloam.experiments.page import PAGE, beside_paper, render_page, require_report_packages, write_report_files
+from gloam.experiments.statistics import Estimate, wilson
+from gloam.experiments.tables import write_csv
 
 from . import charts, paper, tables, words
-from .files import replace_file
 from .findings import findings
-from .optional import require
 from .results import POSTER, VIDEO, Episode, Results, load_results
 from .routes import route_charts
-from .statistics import Estimate, wilson
 from .summary import CellSummary, Summary, summarize
 from .tiers import tier_rows
-
-PAGE = "report.html"
 
 
 def write_report(folder: str | Path) -> list[Path]:
@@ -34,66 +32,49 @@ def write_report(folder: str | Path) -> list[Path]:
     folder cannot be written.
     """
     folder = Path(folder)
-    for module in ("matplotlib.figure", "jinja2", "pyarrow.parquet"):
-        require(module)
+    require_report_packages()
     results = load_results(folder)
     summary = summarize(results)
     rows = tables.episode_rows(results)
     writers: dict[str, Callable[[Path], Any]] = {
-        "results.csv": lambda path: tables.write_csv(path, rows),
-        "cells.csv": lambda path: tables.write_csv(path, tables.cell_rows(summary)),
-        "paired_tests.csv": lambda path: tables.write_csv(path, tables.test_rows(summary.tests)),
-        "results.parquet": lambda path: tables.write_parquet(path, rows),
+        "results.csv": lambda path: write_csv(path, rows),
+        "cells.csv": lambda path: write_csv(path, tables.cell_rows(summary)),
+        "paired_tests.csv": lambda path: write_csv(path, tables.test_rows(summary.tests)),
+        "results.parquet": lambda path: tables.write_episodes(path, rows),
         "table.tex": lambda path: tables.write_latex(path, results, summary),
-        PAGE: lambda path: path.write_text(render_page(results, summary), encoding="utf-8"),
+        PAGE: lambda path: path.write_text(page_of(results, summary), encoding="utf-8"),
     }
-    return [replace_file(folder / name, write) for name, write in writers.items()]
+    return write_report_files(folder, writers)
 
 
-def render_page(results: Results, summary: Summary) -> str:
-    """The page as HTML without external requests. All names are escaped."""
-    jinja2 = require("jinja2")
-    environment = jinja2.Environment(autoescape=True, undefined=jinja2.StrictUndefined, trim_blocks=True, lstrip_blocks=True)
-    environment.filters |= {
-        "number": words.number,
-        "interval": words.interval,
-        "percent": words.percent,
-        "duration": words.duration,
-        "p": words.p_value,
-    }
-    environment.tests["clear_test"] = words.is_clear
+def page_of(results: Results, summary: Summary) -> str:
+    """The page as HTML without external requests."""
     examples = [(cell, _examples(results, cell)) for cell in summary.cells]
-    template = environment.from_string(Path(__file__).with_name("report.html").read_text(encoding="utf-8"))
-    text: str = template.render(
-        request=results.request,
-        results=results,
-        cells=summary.cells,
-        tests=summary.tests,
-        words=words,
-        findings=findings(results, summary),
-        charts={
-            "sc": _image(charts.sc_by_level(results.request, summary)),
-            "outcomes": _image(charts.outcome_bars(results.request, summary)),
-            "collisions": _image(charts.collision_bars(results.request, summary)),
+    values: dict[str, Any] = {
+        "request": results.request,
+        "results": results,
+        "cells": summary.cells,
+        "tests": summary.tests,
+        "words": words,
+        "findings": findings(results, summary),
+        "charts": {
+            "sc": image(charts.sc_by_level(results.request, summary)),
+            "outcomes": image(charts.outcome_bars(results.request, summary)),
+            "collisions": image(charts.collision_bars(results.request, summary)),
         },
-        routes={scene: _image(svg) for scene, svg in route_charts(results).items()},
-        tiers=tier_rows(results.folder),
-        errors=_errors(summary),
-        few=[cell for cell in summary.cells if 0 < cell.finished < 10],
-        total_wall=sum(e.wall_seconds for e in results.episodes),
-        total_cpu=sum(e.cpu_seconds for e in results.episodes),
-        examples=examples,
-        has_videos=any(example.video for _, there in examples for example in there),
-        comparison=_comparison(results, summary),
-        paper=paper,
-        paper_success=_paper_success,
-    )
-    return text
-
-
-def _image(svg: str) -> str:
-    """A chart as an address for <img>: names of gradients and clips of several charts cannot collide, nothing runs."""
-    return "data:image/svg+xml;base64," + base64.b64encode(svg.encode()).decode() if svg else ""
+        "routes": {scene: image(svg) for scene, svg in route_charts(results).items()},
+        "tiers": tier_rows(results.folder),
+        "errors": _errors(summary),
+        "few": [cell for cell in summary.cells if 0 < cell.finished < 10],
+        "total_wall": sum(e.wall_seconds for e in results.episodes),
+        "total_cpu": sum(e.cpu_seconds for e in results.episodes),
+        "examples": examples,
+        "has_videos": any(example.video for _, there in examples for example in there),
+        "comparison": beside_paper(summary.cells, lambda cell: (cell.scene, cell.level), paper.paper_rows),
+        "paper": paper,
+        "paper_success": _paper_success,
+    }
+    return render_page(Path(__file__).with_name("report.html"), values)
 
 
 def _errors(summary: Summary) -> list[tuple[str, str, int, list[str]]]:
@@ -131,13 +112,6 @@ def _examples(results: Results, cell: CellSummary) -> list[_Example]:
 def _address(results: Results, episode: Episode, file: str | None) -> str:
     path = f"{episode.key.folder}/{file}"
     return quote(path) if file and (results.folder / path).is_file() else ""
-
-
-def _comparison(results: Results, summary: Summary) -> list[tuple[str, str, list[paper.PaperRow], list[CellSummary]]]:
-    """(scene, level, rows of the paper, our cells) for each scene and level that the paper has too."""
-    pairs = [(scene, level) for scene in results.request.scenes for level in results.request.levels]
-    rows = [(s, v, paper.paper_rows(s, v), [c for c in summary.cells if (c.scene, c.level) == (s, v)]) for s, v in pairs]
-    return [row for row in rows if row[2]]
 
 
 def _paper_success(row: paper.PaperRow) -> Estimate:

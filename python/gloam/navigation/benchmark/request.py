@@ -2,27 +2,22 @@
 
 from __future__ import annotations
 
-import os
-import platform
-import re
-import time
 from collections.abc import Callable, Iterator
 from dataclasses import asdict, dataclass, fields, replace
 from pathlib import Path
 from typing import Any, TypeVar
 
 import gloam
-from gloam._distribute.manifest import write_json
+from gloam.experiments.checks import Fields, read_object
+from gloam.experiments.request import REQUEST_FILE, STAMP, check_known, check_once, is_folder_name, keep_request
 
 from ..planner import planner_names
-from .checks import Fields, read_object
 from .episode import EpisodeSpec
 from .options import File, Option, arguments, read_files, read_options, type_of
 from .places import ALL_LEVELS, LEVELS, PLACES
 
-REQUEST_FILE = "request.json"
 T = TypeVar("T")
-_MAY_DIFFER = {"episodes", "machine", "version", "started"}  # between the calls that continue a benchmark
+_MAY_DIFFER = STAMP | {"episodes"}  # between the calls that continue a benchmark
 
 
 @dataclass(frozen=True)
@@ -48,16 +43,12 @@ class Request:
 
     def check(self) -> None:
         """Errors: NotFoundError for an unknown planner, scene or level; UsageError for numbers out of range."""
-        for kind, asked, known in (
-            ("planner", self._types(), planner_names()), ("scene", self.scenes, PLACES), ("level", self.levels, ALL_LEVELS),
-        ):  # fmt: skip
-            for name in asked:
-                if name not in known:
-                    raise gloam.NotFoundError(f"there is no {kind} '{name}'; there are: {', '.join(known)}")
+        check_known("planner", self._types(), planner_names())
+        check_known("scene", self.scenes, PLACES)
+        check_known("level", self.levels, ALL_LEVELS)
         for kind, asked in (("planner", self.planners), ("scene", self.scenes), ("level", self.levels)):
-            if not asked or len(set(asked)) != len(asked):
-                raise gloam.UsageError(f"name each {kind} once, got {', '.join(asked) or 'none'}")
-        if unfit := [name for name in self.planners if not re.fullmatch(r"[\w+-][\w.+-]*", name)]:
+            check_once(kind, asked)
+        if unfit := [name for name in self.planners if not is_folder_name(name)]:
             raise gloam.UsageError(f"a planner's name is also a folder's, which '{unfit[0]}' cannot be")
         if not 1 <= self.episodes <= 100_000 or not 0 <= self.seed < 2**32:
             raise gloam.UsageError("expected 1 to 100000 episodes, and a seed from 0 to 2^32 - 1")
@@ -81,16 +72,8 @@ class Request:
         the day of the first call. Errors: UsageError if it holds another one; InputError if its file is not valid."""
         file = folder / REQUEST_FILE
         kept = Request.read(file) if file.is_file() else self
-        if different := _differences(self, kept):
-            raise gloam.UsageError(f"{folder} holds another benchmark ({', '.join(different)} differ)", hint="choose another folder")
-        written = replace(
-            self,
-            episodes=max(self.episodes, kept.episodes),
-            machine=machine_name(),
-            version=gloam.__version__,
-            started=kept.started or time.strftime("%Y-%m-%d"),
-        )
-        write_json(file, asdict(written))
+        written = replace(self, episodes=max(self.episodes, kept.episodes))
+        keep_request(folder, asdict(written), _differences(self, kept), kept.started)
 
     @classmethod
     def read(cls, file: Path) -> Request:
@@ -127,13 +110,3 @@ def _parts(values: Fields, name: str, read: Callable[[Any], tuple[T, ...]]) -> t
         return read(values.value(name)) if values.has(name) else ()
     except (KeyError, TypeError, ValueError) as error:
         raise values.error(name, f"cannot be read: {type(error).__name__}: {error}") from None
-
-
-def machine_name() -> str:
-    """Model and number of its processors."""
-    try:
-        lines = Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines()
-        name = next(line.split(":", 1)[1].strip() for line in lines if line.startswith("model name"))
-    except (OSError, StopIteration):
-        name = platform.processor() or platform.machine()
-    return f"{name}, {os.cpu_count()} processors"

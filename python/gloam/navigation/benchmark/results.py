@@ -10,10 +10,11 @@ from pathlib import Path
 from typing import Any
 
 from gloam.errors import InputError
+from gloam.experiments.checks import Fields, read_object
+from gloam.experiments.request import REQUEST_FILE
 
-from .checks import Fields, read_object
 from .key import Key
-from .request import REQUEST_FILE, Request
+from .request import Request
 
 OUTCOMES = ("success", "collided", "fell", "stuck", "lost", "timed_out", "error")
 VIDEO, POSTER = "video.mp4", "poster.jpg"  # in the folders of episodes that have a video

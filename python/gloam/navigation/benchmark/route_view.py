@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from gloam.experiments.charts import label_font
+from gloam.experiments.optional import require
+
 from ..grid import Grid
 from .episode import BEGIN
-from .optional import require
 from .places import RADIUS
 from .results import Episode
 
@@ -49,7 +50,7 @@ class RouteView:
         key, now = self._episode.key, max(0.0, time - BEGIN)
         left = f"{key.planner} · {key.scene} · {key.level} · episode {key.episode}: {self._episode.outcome.replace('_', ' ')}"
         right = f"{now:4.1f} s, {touches} {'collision' if touches == 1 else 'collisions'}"
-        font = _font()
+        font = label_font(13)
         draw.text((6, size[1] / 2), left, fill=_INK, font=font, anchor="lm")
         draw.text((size[0] - 6, size[1] / 2), right, fill=_INK, font=font, anchor="rm")
         return image
@@ -79,9 +80,3 @@ class RouteView:
     @staticmethod
     def _dot(draw: Any, at: tuple[float, float], radius: int, color: tuple[int, int, int]) -> None:
         draw.ellipse((at[0] - radius, at[1] - radius, at[0] + radius, at[1] + radius), fill=color)
-
-
-def _font() -> Any:
-    """DejaVu Sans, which matplotlib contains."""
-    path = Path(require("matplotlib").get_data_path()) / "fonts/ttf/DejaVuSans.ttf"
-    return require("PIL.ImageFont").truetype(str(path), 13)

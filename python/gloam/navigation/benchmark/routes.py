@@ -5,10 +5,12 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
+from gloam.experiments.charts import INK, Chart, short
+from gloam.experiments.optional import require
+
 from ..grid import Grid
-from .charts import INK, OUTCOME_COLORS, Chart, short
+from .charts import OUTCOME_COLORS
 from .floor_plan import plan_of
-from .optional import require
 from .results import OUTCOMES, Episode, Results
 
 _MOST_COLUMNS = 4

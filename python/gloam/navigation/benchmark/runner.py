@@ -8,9 +8,6 @@ from __future__ import annotations
 
 import json
 import os
-import shutil
-import time
-import uuid
 from collections import deque
 from collections.abc import Callable, Generator
 from contextlib import closing
@@ -20,20 +17,19 @@ from pathlib import Path
 from typing import Any
 
 import gloam
-from gloam._distribute.manifest import publish
+from gloam.experiments.files import locked, remove_parts, whole
+from gloam.experiments.words import Remaining
 
 from ..plugins import load_plugin
 from .episode import EpisodeSpec, run_episode
-from .files import locked
 from .on_cluster import cluster_results
 from .options import check_planners
 from .places import Course
 from .pool import Died, local_results
 from .request import Request
-from .words import duration
 
 _MOST_CRASHES = 3  # of worker processes with one episode, before the benchmark stops
-_PART = "."  # begins the names of folders that are being written
+_PARTS = ("episodes/*/*/*", "maps/*")  # parents of folders that appear when they are complete
 
 
 @dataclass(frozen=True)
@@ -75,31 +71,21 @@ def run(
     planners = check_planners(request.planners, request.options)  # before the folder knows the request
     if single := [name for name, planner in planners.items() if planner.serves_one]:
         workers = workers.single(single[0])
-    try:
-        out.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise gloam.IoError(f"cannot create the folder: {error.strerror}", str(out)) from error
     with locked(out):
         request.keep(out)
         missing = [spec for spec in request.specs() if not _file(out, spec).is_file()]
         if missing:
-            _remove_parts(out)
+            remove_parts(out, *_PARTS)
             job = Job(str(out.resolve()), tuple(file.name for file in request.plugins))
             try:
                 _run_all(missing, job, workers, tell or (lambda _: None))
             finally:
-                _remove_parts(out)
+                remove_parts(out, *_PARTS)
     return [json.loads(_file(out, spec).read_text(encoding="utf-8")) for spec in request.specs()]
 
 
 def _file(out: Path, spec: EpisodeSpec) -> Path:
     return out / "episodes" / spec.path / "episode.json"
-
-
-def _remove_parts(out: Path) -> None:
-    """Removes folders of episodes and maps whose processes were killed."""
-    for part in [*out.glob(f"episodes/*/*/*/{_PART}*"), *out.glob(f"maps/*/{_PART}*")]:
-        shutil.rmtree(part, ignore_errors=True)
 
 
 @lru_cache
@@ -119,18 +105,12 @@ class Job:
         for plugin in self.plugins:
             load_plugin(plugin)
         out = Path(self.out)
-        folder = out / "episodes" / spec.path
-        part = folder.with_name(f"{_PART}{folder.name}.{uuid.uuid4().hex[:12]}")
-        try:
-            result = run_episode(spec, _course(spec.place).pair(spec.pair_seed), part, out / "maps")
-            publish(part, folder)
-            return result
-        finally:
-            shutil.rmtree(part, ignore_errors=True)
+        with whole(out / "episodes" / spec.path) as part:
+            return run_episode(spec, _course(spec.place).pair(spec.pair_seed), part, out / "maps")
 
 
 def _run_all(specs: list[EpisodeSpec], job: Job, workers: Workers, tell: Callable[[str], None]) -> None:
-    begin, done, total = time.monotonic(), 0, len(specs)
+    done, total, remaining = 0, len(specs), Remaining(len(specs))
     crashes: dict[EpisodeSpec, int] = {}
     waiting = deque(_ordered(specs))
     with closing(workers.results(job, waiting)) as results:
@@ -143,8 +123,7 @@ def _run_all(specs: list[EpisodeSpec], job: Job, workers: Workers, tell: Callabl
                 waiting.append(spec)
                 continue
             done += 1
-            left = (time.monotonic() - begin) / done * (total - done)
-            tell(f"{done} of {total}: {spec.path} {result['outcome']}, {duration(left)} left")
+            tell(f"{done} of {total}: {spec.path} {result['outcome']}{remaining.after(done)}")
 
 
 def _ordered(specs: list[EpisodeSpec]) -> list[EpisodeSpec]:

@@ -8,9 +8,12 @@ from dataclasses import dataclass, replace
 from itertools import combinations
 from typing import Literal
 
+from gloam.experiments.statistics import Estimate, bootstrap_mean, generator, holm, mcnemar, sign_flip, wilson
+
 from .key import Key
 from .results import Episode, Results
-from .statistics import Estimate, bootstrap_mean, generator, holm, mcnemar, sign_flip, wilson
+
+ALPHA = 0.05
 
 
 @dataclass(frozen=True)
@@ -88,6 +91,11 @@ class PairedTest:
     def least_p(self) -> float:
         """Smallest p-value that this number of pairs can give: all pairs differ in one direction."""
         return min(1.0, 2.0 ** (1 - self.pairs))
+
+    @property
+    def is_clear(self) -> bool:
+        """Whether an adjusted p-value is below ALPHA."""
+        return any(p is not None and p < ALPHA for p in (self.success_holm, self.sc_holm))
 
 
 @dataclass(frozen=True)

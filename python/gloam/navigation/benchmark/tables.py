@@ -1,30 +1,29 @@
-"""Tables of results: CSV, Parquet and LaTeX."""
+"""Rows of the tables of results, and the table for LaTeX."""
 
 from __future__ import annotations
 
-import csv
 import json
 from collections.abc import Sequence
 from dataclasses import asdict
 from pathlib import Path
-from typing import Any
 
-from .optional import require
+from gloam.experiments.statistics import Estimate
+from gloam.experiments.tables import Row, estimate_columns, write_parquet
+
+from .key import Key
 from .results import OUTCOMES, Episode, Results
-from .statistics import Estimate
 from .summary import CellSummary, PairedTest, Summary
 
 ESTIMATES = ("success", "sc", "spl", "collisions", "time", "distance")
 _KEY = ("planner", "scene", "level", "episode")
 _INTEGERS = ("episode", "seed", "collisions", "plans", "late", "invalid")
 _TEXTS = ("planner", "scene", "level", "status", "outcome", "collisions_by_object", "tier", "log", "hash", "message")
-Row = dict[str, Any]
 
 
 def episode_rows(results: Results) -> list[Row]:
     """One row per requested episode, in the order of the request; pending ones have status "pending" and no values."""
     columns = [*_KEY, "status", *_values_of_episode()]
-    rows: dict[Any, Row] = {e.key: _episode_row(e) for e in results.episodes}
+    rows: dict[Key, Row] = {e.key: _episode_row(e) for e in results.episodes}
     rows |= {key: dict.fromkeys(columns) | asdict(key) | {"status": "pending"} for key in results.pending}
     request = results.request
     place = {name: i for i, name in enumerate(request.cells())}
@@ -54,8 +53,7 @@ def _cell_row(cell: CellSummary) -> Row:
     row: Row = {name: getattr(cell, name) for name in ("planner", "scene", "level", "requested", "finished")}
     row |= {"pending": " ".join(map(str, cell.pending)), "successes": cell.successes}
     for name in ESTIMATES:
-        estimate: Estimate = getattr(cell, name)
-        row |= {name: estimate.value, f"{name}_low": estimate.low, f"{name}_high": estimate.high}
+        row |= estimate_columns(name, getattr(cell, name))
     for name in ("visibility_mean", "visibility_min", "late", "invalid", "wall", "cpu"):
         row[name] = getattr(cell, name)
     row |= {f"outcome_{name}": cell.outcomes.get(name, 0) for name in OUTCOMES}
@@ -70,32 +68,14 @@ def test_rows(tests: Sequence[PairedTest]) -> list[Row]:
     rows = []
     for test in tests:
         row = asdict(test)
-        sc = row.pop("sc")
-        rows.append(row | {"sc_difference": sc["value"], "sc_difference_low": sc["low"], "sc_difference_high": sc["high"]})
+        del row["sc"]
+        rows.append(row | estimate_columns("sc_difference", test.sc))
     return rows
 
 
-def write_csv(path: Path, rows: list[Row]) -> Path:
-    """UTF-8, a header, empty fields for None, floats with all digits."""
-    with open(path, "w", newline="", encoding="utf-8") as file:
-        writer = csv.DictWriter(file, list(rows[0]) if rows else [])
-        writer.writeheader()
-        writer.writerows(rows)
-    return path
-
-
-def write_parquet(path: Path, rows: list[Row]) -> Path:
-    """The rows of `episode_rows`. Types do not depend on the values, so files of several benchmarks can be joined."""
-    arrow, parquet = require("pyarrow"), require("pyarrow.parquet")
-
-    def kind(name: str) -> Any:
-        if name in _TEXTS:
-            return arrow.string()
-        return arrow.int64() if name in _INTEGERS else arrow.bool_() if name == "success" else arrow.float64()
-
-    schema = arrow.schema([(name, kind(name)) for name in rows[0]])
-    parquet.write_table(arrow.Table.from_pylist(rows, schema=schema), path)
-    return path
+def write_episodes(path: Path, rows: list[Row]) -> Path:
+    """The rows of `episode_rows` as Parquet."""
+    return write_parquet(path, rows, _TEXTS, _INTEGERS, ("success",))
 
 
 _LATEX = str.maketrans({

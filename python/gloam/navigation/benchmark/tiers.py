@@ -7,14 +7,14 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 import gloam
+from gloam.experiments.files import replace_file
+from gloam.experiments.statistics import Estimate, bootstrap_mean, generator, mcnemar, sign_flip
+from gloam.experiments.tables import estimate_columns, write_csv
+from gloam.experiments.words import interval, number, p_value
 
-from .files import replace_file
 from .options import check_planners
 from .request import Request
 from .results import Episode, Results, load_results
-from .statistics import Estimate, bootstrap_mean, generator, mcnemar, sign_flip
-from .tables import write_csv
-from .words import interval, number, p_value
 
 TIER = "path"
 FOLDER = "path_tier"  # in the folder of the benchmark: a benchmark of its own
@@ -108,8 +108,8 @@ def write_tiers(folder: Path) -> list[TierRow]:
 
 def _columns(row: TierRow) -> dict[str, object]:
     values = dict(vars(row))
-    difference = values.pop("difference")
-    return values | {"difference": difference.value, "difference_low": difference.low, "difference_high": difference.high}
+    del values["difference"]
+    return values | estimate_columns("difference", row.difference)
 
 
 def tier_lines(rows: Sequence[TierRow], tier: str) -> list[str]:

@@ -8,24 +8,23 @@ from __future__ import annotations
 
 import shutil
 import tempfile
-import time
 from bisect import bisect_right
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
 import gloam
+from gloam.experiments.files import locked
+from gloam.experiments.movie import write_movie
+from gloam.experiments.optional import require
+from gloam.experiments.words import Remaining
 
 from ..grid import Grid
-from .files import locked
 from .floor_plan import plan_of
-from .movie import write_movie
-from .optional import require
 from .places import CAMERA
 from .results import POSTER, VIDEO, Episode, Results, load_results
 from .route_view import RouteView
 from .summary import median_and_worst
-from .words import duration
 
 _RATE, _SPEED = 4.0, 2.0  # images per second of simulation time [Hz]; speed of the video relative to it
 _CAMERA_SIZE = (160, 120)  # as for networks: four times as many pixels would cost four times as much [px]
@@ -44,11 +43,10 @@ def render_videos(folder: Path, progress: Callable[[str], None]) -> list[str]:
         chosen = chosen_episodes(results)
         _remove_others(folder, chosen)
         waiting = [e for e in chosen if not (folder / e.key.folder / VIDEO).is_file()]
-        problems, begin = [], time.monotonic()
+        problems, remaining = [], Remaining(len(waiting))
         for done, episode in enumerate(waiting):
             name = episode.key.folder.removeprefix("episodes/")
-            left = f", {duration((time.monotonic() - begin) / done * (len(waiting) - done))} left" if done else ""
-            progress(f"video {done + 1} of {len(waiting)}: {name}{left}")
+            progress(f"video {done + 1} of {len(waiting)}: {name}{remaining.after(done)}")
             try:
                 _render(folder, episode)
             except gloam.Error as error:

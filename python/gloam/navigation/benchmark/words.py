@@ -1,55 +1,12 @@
-"""Numbers and tests in words, as the page prints them."""
+"""Tests and episodes in words, as the page prints them."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 
-from .statistics import Estimate
-from .summary import PairedTest
+from gloam.experiments.words import count, interval, number
 
-ALPHA = 0.05
-NONE = "–"
-
-
-def number(value: float | None, digits: int = 2) -> str:
-    """Fixed digits with a proper minus sign; "–" for None."""
-    if value is None:
-        return NONE
-    text = f"{value:.{digits}f}"
-    # -0.00 would suggest a direction.
-    return text.lstrip("-") if float(text) == 0 else text.replace("-", "−")
-
-
-def interval(estimate: Estimate, digits: int = 2) -> str:
-    """ "[0.62, 0.92]"; "" without an interval; "all equal" where resampling cannot show a spread."""
-    if estimate.low is None or estimate.high is None:
-        return ""
-    if estimate.constant:
-        return "all equal"
-    return f"[{number(estimate.low, digits)},\u00a0{number(estimate.high, digits)}]"  # no line break inside
-
-
-def percent(share: float | None) -> str:
-    """A share in percent with one digit; "–" for None, "< 0.1 %" for a small one that is not 0."""
-    if share is None:
-        return NONE
-    return "< 0.1 %" if 0 < share < 0.001 else f"{100 * share:.1f} %"
-
-
-def duration(seconds: float | None) -> str:
-    """ "42 s", "12 min", "3.4 h"; "–" for None."""
-    if seconds is None:
-        return NONE
-    if seconds < 120:
-        return f"{seconds:.1f} s" if seconds < 10 else f"{seconds:.0f} s"
-    return f"{seconds / 60:.0f} min" if seconds < 7200 else f"{seconds / 3600:.1f} h"
-
-
-def p_value(p: float | None) -> str:
-    """ "= 0.031", "< 0.001"; "–" for None."""
-    if p is None:
-        return NONE
-    return "< 0.001" if p < 0.001 else f"= {p:.3f}"
+from .summary import ALPHA, PairedTest
 
 
 def success_words(test: PairedTest) -> str:
@@ -93,11 +50,6 @@ def verdict(test: PairedTest) -> str:
     return f"{', '.join(ways)} with “{test.second}”" if ways else "no clear difference"
 
 
-def is_clear(test: PairedTest) -> bool:
-    """Whether an adjusted p-value is below 0.05."""
-    return any(p is not None and p < ALPHA for p in (test.success_holm, test.sc_holm))
-
-
 def power_note(family: list[PairedTest]) -> str:
     """A sentence if no test of a family can have an adjusted p below 0.05, because the smallest p-value of its pairs times
     the number of tests is larger; "" otherwise."""
@@ -128,8 +80,3 @@ def episodes(values: Sequence[int], requested: int) -> str:
     if len(values) == requested:
         return {1: "the only episode", 2: "both episodes"}.get(requested, f"all {requested} episodes")
     return f"{'episode' if len(values) == 1 else 'episodes'} {numbers(values)}"
-
-
-def count(number: int, noun: str) -> str:
-    """ "1 collision", "2 collisions"; the plural of "success" is "successes"."""
-    return f"{number} {noun}" if number == 1 else f"{number} {noun}{'es' if noun.endswith('s') else 's'}"

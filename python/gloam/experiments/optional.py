@@ -1,4 +1,4 @@
-"""Packages that only the report and its videos need."""
+"""Packages that only reports and their videos need."""
 
 from __future__ import annotations
 
@@ -18,6 +18,6 @@ def require(module: str) -> ModuleType:
     except ImportError as error:
         package = _PACKAGES[module.split(".")[0]]
         raise UnsupportedError(
-            f"the report of the navigation benchmark needs the package {package}",
+            f"the report needs the package {package}",
             hint=f"pip install {package}, or 'gloam[navigation]'",
         ) from error

@@ -1,0 +1,1 @@
+"""Parts that all experiments of Gloam share: results folders, requests, statistics, tables, charts, videos and pages."""
