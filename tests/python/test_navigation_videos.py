@@ -84,7 +84,7 @@ def test_a_full_disk_is_reported(log: Path, tmp_path: Path, monkeypatch: pytest.
     def full(*_: Any) -> int:
         raise OSError(errno.ENOSPC, "No space left on device")
 
-    monkeypatch.setattr("gloam.navigation.benchmark.videos.write_movie", full)
+    monkeypatch.setattr("gloam.experiments.videos.write_movie", full)
     folder = folder_of(tmp_path, log, [0])
     (problem,) = render_videos(folder, lambda _: None)
     assert "No space left on device" in problem and videos(folder) == {}

@@ -14,10 +14,10 @@ from env import ROOT, python_env
 pytest.importorskip("PIL.Image")
 
 from gloam.slam.adapters.contract import INITIALIZING, LOST, TRACKED  # noqa: E402
-from gloam.slam.estimate import read_frames  # noqa: E402
+from gloam.slam.estimate import read_features, read_frames  # noqa: E402
 from gloam.slam.methods import METHODS, load_method  # noqa: E402
 from gloam.slam.run import Outcome, run_method  # noqa: E402
-from slam_sequences import slide  # noqa: E402
+from slam_sequences import HEIGHT, WIDTH, slide  # noqa: E402
 
 ADAPTERS = Path(gloam.__file__).parent / "slam" / "adapters"
 
@@ -51,6 +51,24 @@ def outcome(method: str, case: Path, out: Path, **values: str) -> Outcome:
     return run_method(load_method(method), case, out, {"seed": "1", **values}, 120)
 
 
+def check_features(out: Path) -> None:
+    """Features are pixels of the image, in tracked frames only, and move against the camera: 4 px on the near wall per frame, 2 px
+    on the far one."""
+    features, frames = read_features(out), read_frames(out / "frames.csv")
+    assert [frame.time for frame in frames] == list(features)
+    first = next(k for k, frame in enumerate(frames) if frame.state == TRACKED)
+    assert all(len(features[frame.time]) == 0 for frame in frames if frame.state != TRACKED)
+    moves = []
+    for before, now in zip(frames[first + 1 :], frames[first + 2 :], strict=False):
+        a, b = features[before.time], features[now.time]
+        assert len(b) > 20 and (b > -1).all() and (b[:, 0] < WIDTH).all() and (b[:, 1] < HEIGHT).all()
+        gap = a[:, None] - b
+        near = (np.abs(gap[..., 1]) < 0.6) & (gap[..., 0] > 0) & (gap[..., 0] < 6)
+        moves += gap[..., 0][near].tolist()
+    shares = [np.mean(np.abs(np.array(moves) - move) < 0.6) for move in (2, 4)]
+    assert sum(shares) > 0.55, "of steps from 0 to 6 px, by chance 0.4"
+
+
 @pytest.mark.parametrize("sensors", ["mono", "stereo", "rgbd"])
 def test_odometry_measures_an_exact_motion(case: Path, tmp_path: Path, sensors: str) -> None:
     found = outcome(f"odometry_{sensors}", case, tmp_path / "out")
@@ -59,6 +77,7 @@ def test_odometry_measures_an_exact_motion(case: Path, tmp_path: Path, sensors: 
     error, most = (found.measures.ate_sim3, 0.12) if sensors == "mono" else (found.measures.ate_se3, 0.04)
     assert error is not None and error < most and found.measures.tracked > 0.85
     assert found.measures.completeness > 0.8 and found.measures.coverage == pytest.approx(found.measures.completeness, abs=0.25)
+    check_features(tmp_path / "out")
     again = outcome(f"odometry_{sensors}", case, tmp_path / "again")
     assert (tmp_path / "again/poses.tum").read_text() == (tmp_path / "out/poses.tum").read_text() and again.state == "ok"
 
@@ -93,6 +112,7 @@ def test_orb_slam3_measures_an_exact_motion(case: Path, vocabulary: Path, tmp_pa
     found = outcome(f"orb_slam3_{sensors}", case, tmp_path / "out", vocabulary=str(vocabulary))
     assert found.state == "ok", found.message
     assert found.measures.tracked > 0.8 and found.measures.ate_se3 is not None and found.measures.ate_se3 < 0.05
+    check_features(tmp_path / "out")
 
 
 def test_orb_slam3_names_its_problem(case: Path, vocabulary: Path, tmp_path: Path) -> None:

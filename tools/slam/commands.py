@@ -14,7 +14,7 @@ _LICENCES = {"orb_slam3": "GPL-3.0: ORB-SLAM3 runs as a program of its own"}
 
 
 def main(arguments: list[str] | None = None) -> int:
-    """The command line. Exit codes: 0 ok, 1 failure, 2 usage, 3 some runs failed, 130 interrupted."""
+    """The command line. Exit codes: 0 ok, 1 failure, 2 usage, 3 runs failed or videos are missing, 130 interrupted."""
     parser = argparse.ArgumentParser(prog="gloam slam", description="SLAM methods on sequences of Gloam (docs/slam.md).")
     commands = parser.add_subparsers(dest="command", required=True)
     _add_bench(commands)
@@ -65,6 +65,7 @@ def _add_bench(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     option("--vocabulary", default="", help="file for ORB-SLAM; default: made from the images in clear air")
     option("--workers", type=int, default=1, help="methods at a time; more than one disturbs times per frame; default: %(default)s")
     option("--out", default="results/slam", help="folder of the results; default: %(default)s")
+    option("--no-videos", action="store_true", help="do not render the median and the worst run of each cell")
     option("--no-report", action="store_true", help="run the methods only")
     command.set_defaults(action=_bench)
 
@@ -73,6 +74,7 @@ def _bench(given: argparse.Namespace) -> int:
     import gloam
     from gloam.slam.benchmark import Request, run
     from gloam.slam.report import write_report
+    from gloam.slam.videos import render_videos
 
     names = [tuple(filter(None, text.split(","))) for text in (given.methods, given.scenes, given.levels)]
     width, _, height = given.resolution.partition("x")
@@ -86,12 +88,15 @@ def _bench(given: argparse.Namespace) -> int:
         raise gloam.UsageError("--workers must be at least 1")
     out = Path(given.out)
     rows = run(request, out, given.workers, _tell)
+    problems = [] if given.no_report or given.no_videos else render_videos(out, _tell)
     for file in [] if given.no_report else write_report(out):
         print(file)
     failed = [row for row in rows if row["state"] != "ok"]
     for message in dict.fromkeys(f"{row['method']}, {row['scene']}, {row['level']}: {row['state']}: {row['message']}" for row in failed):
-        _tell(f"gloam: {message}")
-    return 3 if failed else 0
+        problems.append(message)
+    for problem in problems:
+        _tell(f"gloam: {problem}")
+    return 3 if problems else 0
 
 
 def _add_install(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:

@@ -27,11 +27,12 @@ from gloam.navigation.benchmark.places import ALL_LEVELS, LEVELS, PLACES
 
 from .estimate import read_tum
 from .methods import Method, load_method, opencv_python
+from .results import OUTCOME, Key, case_of
 from .run import run_method
 from .sequence import TRUTH, Condition, make_sequence
 from .tour import Tour, record_tour
 
-OUTCOME, VOCABULARY, OVERLAYS = "outcome.json", "vocabulary.txt", "overlays"
+VOCABULARY, OVERLAYS = "vocabulary.txt", "overlays"
 _PARTS = ("tours", "cases/*", "runs/*/*/*")  # parents of folders that appear when they are complete
 _MAY_DIFFER = STAMP | {"methods", "runs"}  # between the calls that continue a benchmark
 Tell = Callable[[str], None]
@@ -108,21 +109,6 @@ class Request:
         keep_request(out, mine, different, kept.text("started"))
 
 
-@dataclass(frozen=True)
-class Key:
-    """The place of a run in the benchmark."""
-
-    method: str
-    scene: str
-    level: str
-    number: int
-
-    @property
-    def path(self) -> Path:
-        """Its folder in `runs` of the results."""
-        return Path(self.method, self.scene, self.level, f"{self.number:04}")
-
-
 def run(request: Request, out: Path, workers: int = 1, tell: Tell | None = None) -> list[dict[str, Any]]:
     """Makes the missing parts of a folder. Returns all outcomes, each with its key.
 
@@ -158,11 +144,6 @@ def run(request: Request, out: Path, workers: int = 1, tell: Tell | None = None)
 
 def _file(out: Path, key: Key) -> Path:
     return out / "runs" / key.path / OUTCOME
-
-
-def case_of(out: Path, scene: str, level: str) -> Path:
-    """Folder of a sequence and its truth."""
-    return out / "cases" / scene / level
 
 
 _SENSOR_FILES = {"stereo": "right.txt", "lidar": "scans.txt"}  # of sequences that have these sensors

@@ -14,12 +14,12 @@ from gloam.navigation.benchmark.floor_plan import plan_of
 from gloam.navigation.grid import Grid
 
 from .adapters.contract import INITIALIZING, LOST, TRACKED
-from .benchmark import Key, case_of
-from .estimate import Array, Estimate, Trajectory, read_estimate, read_tum
+from .estimate import Array, Trajectory, read_run, read_tum
 from .methods import load_method
+from .results import Key, case_of
 from .sequence import TRUTH, TRUTH_LIDAR, VISIBILITY
 
-STATE_COLORS = {INITIALIZING: "#c4c9d1", TRACKED: "#009e73", LOST: "#d55e00"}
+STATE_COLORS = {INITIALIZING: "#969ca6", TRACKED: "#009e73", LOST: "#d55e00"}
 _WALL = "#e3e6ea"
 _WIDTH = 3.6  # of a panel [in]
 _MARGIN = 1.0  # of the floor plan around the path [m]
@@ -27,7 +27,7 @@ _MARGIN = 1.0  # of the floor plan around the path [m]
 
 def trajectory_chart(out: Path, scene: str, levels: tuple[str, ...], methods: tuple[str, ...]) -> str:
     """SVG text: a panel per level with the true path and the aligned estimate of the first run of every method."""
-    plan = plan_of(out, scene, levels[0])
+    plan = plan_of_tour(out, scene)
     width, height = np.ptp(read_tum(case_of(out, scene, levels[0]) / TRUTH).poses[:, :2], axis=0) + 2 * _MARGIN
     legend = 0.25 * -(-(len(methods) + 1) // 4)
     with Chart(_WIDTH * len(levels), _WIDTH * height / width + 0.4 + legend, f"slam {scene}") as chart:
@@ -40,6 +40,11 @@ def trajectory_chart(out: Path, scene: str, levels: tuple[str, ...], methods: tu
         handles += [lines.Line2D([], [], color=_color(k), label=name) for k, name in enumerate(methods)]
         chart.figure.legend(handles=handles, loc="outside upper left", ncols=min(len(handles), 4), frameon=False)
     return chart.svg
+
+
+def plan_of_tour(out: Path, scene: str) -> Grid | None:
+    """The floor plan of a scene, which is the same at all levels: tours have no clutter of adversity."""
+    return plan_of(out, scene, "none")
 
 
 def visibility(case: Path) -> Array:
@@ -60,9 +65,9 @@ def _panel(axis: Any, plan: Grid | None, out: Path, scene: str, level: str, meth
     axis.plot(truth.poses[:, 0], truth.poses[:, 1], color="#222222", linewidth=2.4, alpha=0.5, rasterized=True)
     for k, name in enumerate(methods):
         method = load_method(name)
-        estimate = _estimate(out, Key(method.name, scene, level, 0))
+        estimate = read_run(out / "runs" / Key(method.name, scene, level, 0).path)
         own_truth = read_tum(case / (TRUTH_LIDAR if method.has_lidar else TRUTH))
-        points = None if estimate is None else aligned(estimate.trajectory, own_truth, method.is_metric)
+        points = aligned(estimate.trajectory, own_truth, method.is_metric)
         if points is not None:
             axis.plot(points[:, 0], points[:, 1], color=_color(k), linewidth=1, rasterized=True)
     low, high = truth.poses[:, :2].min(0) - _MARGIN, truth.poses[:, :2].max(0) + _MARGIN
@@ -88,13 +93,6 @@ def aligned(estimate: Trajectory, truth: Trajectory, is_metric: bool) -> np.ndar
     return np.asarray(found["scale"] * estimate.poses[:, :3] @ turn.T + np.array(found["translation_m"]))
 
 
-def _estimate(out: Path, key: Key) -> Estimate | None:
-    try:
-        return read_estimate(out / "runs" / key.path)
-    except (OSError, gloam.InputError):
-        return None
-
-
 def tracking_chart(out: Path, scene: str, levels: tuple[str, ...], methods: tuple[str, ...]) -> str:
     """SVG text: the extinction at the camera, and the state of every frame of the first run, a bar per level and method."""
     rows = [(load_method(name).name, level) for level in levels for name in methods]
@@ -107,8 +105,7 @@ def tracking_chart(out: Path, scene: str, levels: tuple[str, ...], methods: tupl
         above.set_ylabel("extinction [1/m]")
         above.legend(frameon=False)
         for y, (name, level) in enumerate(rows):
-            estimate = _estimate(out, Key(name, scene, level, 0))
-            frames = () if estimate is None else estimate.frames
+            frames = read_run(out / "runs" / Key(name, scene, level, 0).path).frames
             begin = 0
             for k in range(1, len(frames) + 1):
                 if k == len(frames) or frames[k].state != frames[begin].state:

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from gloam.errors import InputError
 
-from .adapters.contract import FRAMES, POSES, STATES, TRACKED
+from .adapters.contract import FEATURES, FRAMES, POSES, STATES, TRACKED
 
 Array = NDArray[np.float64]
 _UNIT = 1e-3  # by which the length of a quaternion may differ from 1
@@ -104,3 +104,37 @@ def read_estimate(folder: Path) -> Estimate:
     if not frames.is_file():
         return Estimate(trajectory, tuple(Frame(float(time), TRACKED, math.nan) for time in trajectory.times))
     return Estimate(trajectory, read_frames(frames))
+
+
+def read_run(folder: Path) -> Estimate:
+    """As read_estimate, but without poses if either file is missing or malformed."""
+    try:
+        return read_estimate(folder)
+    except (InputError, OSError):
+        return Estimate(NO_POSES, frames_of_failure(folder))
+
+
+def frames_of_failure(folder: Path) -> tuple[Frame, ...]:
+    """The frames of a run that has failed; none if their file is missing or malformed."""
+    try:
+        return read_frames(folder / FRAMES)
+    except (InputError, OSError):
+        return ()
+
+
+def read_features(folder: Path) -> dict[float, Array]:
+    """Pixels (n, 2) by the time of their frame, from features.txt in a method's output folder; empty without that file. Errors:
+    InputError with the line; OSError."""
+    file = folder / FEATURES
+    if not file.is_file():
+        return {}
+    features: dict[float, Array] = {}
+    for number, line in enumerate(file.read_text(encoding="utf-8", errors="replace").splitlines(), 1):
+        try:
+            values = np.array([float(word) for word in line.split()])
+        except ValueError:
+            raise InputError(f"expected numbers, got '{line[:60]}'", str(file), number) from None
+        if len(values) % 2 == 0 or not np.isfinite(values).all():
+            raise InputError("expected a time and pairs of finite pixels", str(file), number)
+        features[float(values[0])] = values[1:].reshape(-1, 2)
+    return features

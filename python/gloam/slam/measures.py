@@ -132,15 +132,17 @@ def _tracking(frames: Sequence[Frame], times: Array) -> dict[str, Any]:
     states = [frame.state for frame in frames]
     first = next((frame.time for frame in frames if frame.state == TRACKED), None)
     seconds = [frame.seconds for frame in frames if math.isfinite(frame.seconds)]
-    returns = sum(before == LOST and after == TRACKED for before, after in zip(states, states[1:], strict=False))
-    begun = states.index(TRACKED) if TRACKED in states else len(states)
-    restarts = sum(
-        before not in (LOST, TRACKED) and after == TRACKED for before, after in zip(states[begun:], states[begun + 1 :], strict=False)
-    )
     return {
         "tracked": min(1.0, states.count(TRACKED) / len(times)),
         "first_track": None if first is None else first - float(times[0]),
-        "relocalisations": returns + restarts,
+        "relocalisations": len(returns(states)),
         "seconds": float(np.mean(seconds)) if seconds else None,
         "frames": len(times),
     }
+
+
+def returns(states: Sequence[str]) -> list[int]:
+    """Numbers of the frames at which a method tracks again: after it was lost, or begins again after the first track."""
+    begun = states.index(TRACKED) if TRACKED in states else len(states)
+    pairs = enumerate(zip(states, states[1:], strict=False), 1)
+    return [k for k, (before, now) in pairs if now == TRACKED != before and (before == LOST or k > begun)]

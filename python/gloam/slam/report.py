@@ -2,23 +2,23 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
+from urllib.parse import quote
 
 from gloam.experiments import words
 from gloam.experiments.charts import image
 from gloam.experiments.checks import read_object
 from gloam.experiments.page import PAGE, beside_paper, render_page, require_report_packages, write_report_files
 from gloam.experiments.request import REQUEST_FILE
-from gloam.experiments.tables import Row, estimate_columns, write_csv, write_parquet
+from gloam.experiments.tables import estimate_columns, write_csv, write_parquet
+from gloam.experiments.videos import POSTER, VIDEO
 from gloam.navigation.benchmark.visibility import KOSCHMIEDER
 
 from . import paper
-from .benchmark import Key, case_of
 from .charts import tracking_chart, trajectory_chart, visibility
-from .methods import load_method
+from .results import Key, Row, case_of, load_rows
 from .summary import MEASURES, Cell, summarize
 
 _TEXTS = ("method", "scene", "level", "state", "message")
@@ -44,21 +44,6 @@ def write_report(out: Path) -> list[Path]:
     return write_report_files(out, writers)
 
 
-def load_rows(out: Path, request: Row) -> list[Row]:
-    """Outcomes of all finished runs with their keys, in the order of the request."""
-    rows = []
-    for scene in request["scenes"]:
-        for level in request["levels"]:
-            for name in request["methods"]:
-                method = load_method(name).name
-                for number in range(request["runs"]):
-                    file = out / "runs" / Key(method, scene, level, number).path / "outcome.json"
-                    if file.is_file():
-                        found = json.loads(file.read_text(encoding="utf-8"))
-                        rows.append({"method": method, "scene": scene, "level": level, "number": number, **found})
-    return rows
-
-
 def page_of(out: Path, request: Row, cells: list[Cell]) -> str:
     """The page as HTML without external requests."""
     scenes = list(dict.fromkeys(cell.scene for cell in cells))
@@ -71,10 +56,21 @@ def page_of(out: Path, request: Row, cells: list[Cell]) -> str:
         "visibility": {(cell.scene, cell.level): _visibility(out, cell) for cell in cells},
         "trajectories": {scene: image(trajectory_chart(out, scene, shown[scene], methods)) for scene in scenes},
         "tracking": {scene: image(tracking_chart(out, scene, shown[scene], methods)) for scene in scenes},
+        "examples": [(cell, _examples(out, cell)) for cell in cells],
         "paper": paper,
         "comparison": beside_paper(cells, lambda cell: (cell.scene, cell.level), paper.paper_rows),
     }
     return render_page(Path(__file__).with_name("report.html"), values)
+
+
+def _examples(out: Path, cell: Cell) -> list[tuple[Row, str, str]]:
+    """The median run of a cell, and the worst one if it is another, with the addresses of video and poster; "" = there is none."""
+
+    def address(row: Row, file: str) -> str:
+        path = Path("runs") / Key.of(row).path / file
+        return quote(str(path)) if (out / path).is_file() else ""
+
+    return [(row, address(row, VIDEO), address(row, POSTER)) for row in cell.examples]
 
 
 def _visibility(out: Path, cell: Cell) -> str:

@@ -13,8 +13,7 @@ from typing import Any
 
 import gloam
 
-from .adapters.contract import FRAMES
-from .estimate import NO_POSES, Estimate, Frame, Trajectory, read_estimate, read_frames, read_tum
+from .estimate import NO_POSES, Estimate, Trajectory, frames_of_failure, read_estimate, read_tum
 from .measures import Measures, measure
 from .methods import Method
 from .sequence import TRUTH, TRUTH_LIDAR
@@ -79,10 +78,7 @@ def _end(process: subprocess.Popen[bytes]) -> None:
 
 
 def _failed(state: str, message: str, wall: float, out: Path, truth: Trajectory) -> Outcome:
-    frames: tuple[Frame, ...] = ()
-    with contextlib.suppress(gloam.InputError, OSError):
-        frames = read_frames(out / FRAMES)
-    return Outcome(state, message, wall, measure(Estimate(NO_POSES, frames), truth, True))
+    return Outcome(state, message, wall, measure(Estimate(NO_POSES, frames_of_failure(out)), truth, True))
 
 
 def _described(code: int, log: Path) -> str:

@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
 
 from gloam.experiments.statistics import Estimate, bootstrap_mean, generator
+
+from .results import Row, chosen_rows
 
 MEASURES = (
     "ate_se3", "ate_sim3", "rpe", "rpe_angle", "coverage", "coverage_printed", "scaled_ate", "scaled_ate_printed",
@@ -17,7 +18,8 @@ MEASURES = (
 
 @dataclass(frozen=True)
 class Cell:
-    """runs: finished; states: how they ended; means: by measure, over the runs in which it is defined."""
+    """runs: finished; states: how they ended; means: by measure, over the runs in which it is defined; examples: the median run and
+    the worst one, if it is another."""
 
     method: str
     scene: str
@@ -26,6 +28,7 @@ class Cell:
     states: Counter[str]
     messages: tuple[str, ...]
     means: dict[str, Estimate]
+    examples: tuple[Row, ...]
 
     @property
     def failures(self) -> int:
@@ -38,9 +41,9 @@ class Cell:
         return f"{self.method}/{self.scene}/{self.level}"
 
 
-def summarize(rows: Sequence[dict[str, Any]], seed: int) -> list[Cell]:
+def summarize(rows: Sequence[Row], seed: int) -> list[Cell]:
     """Cells in the order of their first run; rows: outcomes with their keys (benchmark.run)."""
-    groups: dict[tuple[str, str, str], list[dict[str, Any]]] = {}
+    groups: dict[tuple[str, str, str], list[Row]] = {}
     for row in rows:
         groups.setdefault((row["scene"], row["level"], row["method"]), []).append(row)
     cells = []
@@ -50,5 +53,5 @@ def summarize(rows: Sequence[dict[str, Any]], seed: int) -> list[Cell]:
             values = [row["measures"][name] for row in mine if row["measures"][name] is not None]
             means[name] = bootstrap_mean(values, generator(seed, f"{method}/{scene}/{level}/{name}"))
         messages = tuple(dict.fromkeys(row["message"] for row in mine if row["message"]))
-        cells.append(Cell(method, scene, level, len(mine), Counter(row["state"] for row in mine), messages, means))
+        cells.append(Cell(method, scene, level, len(mine), Counter(row["state"] for row in mine), messages, means, tuple(chosen_rows(mine))))
     return cells

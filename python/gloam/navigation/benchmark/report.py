@@ -15,10 +15,11 @@ from gloam.experiments.charts import image
 from gloam.experiments.page import PAGE, beside_paper, render_page, require_report_packages, write_report_files
 from gloam.experiments.statistics import Estimate, wilson
 from gloam.experiments.tables import write_csv
+from gloam.experiments.videos import POSTER, VIDEO
 
 from . import charts, paper, tables, words
 from .findings import findings
-from .results import POSTER, VIDEO, Episode, Results, load_results
+from .results import Episode, Results, load_results
 from .routes import route_charts
 from .summary import CellSummary, Summary, summarize
 from .tiers import tier_rows

@@ -17,7 +17,6 @@ from .key import Key
 from .request import Request
 
 OUTCOMES = ("success", "collided", "fell", "stuck", "lost", "timed_out", "error")
-VIDEO, POSTER = "video.mp4", "poster.jpg"  # in the folders of episodes that have a video
 
 
 @dataclass(frozen=True)

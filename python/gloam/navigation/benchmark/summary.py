@@ -9,6 +9,7 @@ from itertools import combinations
 from typing import Literal
 
 from gloam.experiments.statistics import Estimate, bootstrap_mean, generator, holm, mcnemar, sign_flip, wilson
+from gloam.experiments.videos import median_and_worst
 
 from .key import Key
 from .results import Episode, Results
@@ -146,7 +147,7 @@ def _cell(
         objects.update({name: count for name, count in episode.collisions_by_object.items() if count})
         if unknown := episode.collisions - sum(episode.collisions_by_object.values()):
             objects["(unknown)"] += unknown
-    median, worst = median_and_worst(episodes)
+    median, worst = median_and_worst_of(episodes)
     least = [e.visibility_min for e in episodes if e.visibility_min is not None]
     return CellSummary(
         *name,
@@ -174,11 +175,9 @@ def _cell(
     )
 
 
-def median_and_worst(episodes: list[Episode]) -> tuple[Episode | None, Episode | None]:
-    """The median episode of a cell and its worst one, by SC, then by final distance, then by number; None without any.
-    Of an even number, the median is the better one of the two in the middle, so that it is not the worst of two."""
-    ranked = sorted(episodes, key=lambda e: (e.sc, -e.final_distance, e.key.episode))
-    return (ranked[len(ranked) // 2], ranked[0]) if ranked else (None, None)
+def median_and_worst_of(episodes: list[Episode]) -> tuple[Episode | None, Episode | None]:
+    """The median episode of a cell and its worst one, by SC, then by final distance, then by number; None without any."""
+    return median_and_worst(episodes, lambda e: (e.sc, -e.final_distance, e.key.episode)) or (None, None)
 
 
 _Cell = tuple[str, str, str]

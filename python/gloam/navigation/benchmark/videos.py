@@ -6,8 +6,6 @@ finished one is kept until another episode is the median or the worst.
 
 from __future__ import annotations
 
-import shutil
-import tempfile
 from bisect import bisect_right
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -15,16 +13,15 @@ from typing import Any
 
 import gloam
 from gloam.experiments.files import locked
-from gloam.experiments.movie import write_movie
 from gloam.experiments.optional import require
-from gloam.experiments.words import Remaining
+from gloam.experiments.videos import Film, write_films
 
 from ..grid import Grid
 from .floor_plan import plan_of
 from .places import CAMERA
-from .results import POSTER, VIDEO, Episode, Results, load_results
+from .results import Episode, Results, load_results
 from .route_view import RouteView
-from .summary import median_and_worst
+from .summary import median_and_worst_of
 
 _RATE, _SPEED = 4.0, 2.0  # images per second of simulation time [Hz]; speed of the video relative to it
 _CAMERA_SIZE = (160, 120)  # as for networks: four times as many pixels would cost four times as much [px]
@@ -40,52 +37,25 @@ def render_videos(folder: Path, progress: Callable[[str], None]) -> list[str]:
     require("matplotlib")
     results = load_results(folder)
     with locked(folder):
-        chosen = chosen_episodes(results)
-        _remove_others(folder, chosen)
-        waiting = [e for e in chosen if not (folder / e.key.folder / VIDEO).is_file()]
-        problems, remaining = [], Remaining(len(waiting))
-        for done, episode in enumerate(waiting):
-            name = episode.key.folder.removeprefix("episodes/")
-            progress(f"video {done + 1} of {len(waiting)}: {name}{remaining.after(done)}")
-            try:
-                _render(folder, episode)
-            except gloam.Error as error:
-                problems.append(f"no video of {name}: {error}")
-        return problems
+        homes = [folder / e.key.folder for e in results.episodes]
+        return write_films(homes, [_film(folder, e) for e in chosen_episodes(results)], progress)
 
 
 def chosen_episodes(results: Results) -> list[Episode]:
     """The median and the worst episode of each cell that have a log, without repetitions."""
-    pairs = (median_and_worst(results.cell(*cell)) for cell in results.request.cells())
+    pairs = (median_and_worst_of(results.cell(*cell)) for cell in results.request.cells())
     chosen = {e.key: e for pair in pairs for e in pair if e is not None}
     return [e for e in chosen.values() if e.log and (results.folder / e.key.folder / e.log).is_file()]
 
 
-def _remove_others(folder: Path, chosen: list[Episode]) -> None:
-    """Removes videos of episodes that are no longer chosen, and remains of an interrupted call."""
-    kept = {folder / e.key.folder for e in chosen}
-    for path in [*(folder / "episodes").glob(f"*/*/*/*/{VIDEO}"), *(folder / "episodes").glob(f"*/*/*/*/{POSTER}")]:
-        if path.parent not in kept:
-            path.unlink(missing_ok=True)
-    for path in (folder / "episodes").glob("*/*/*/*/.video-*"):
-        shutil.rmtree(path, ignore_errors=True)
-
-
-def _render(folder: Path, episode: Episode) -> None:
+def _film(folder: Path, episode: Episode) -> Film:
     home = folder / episode.key.folder
-    try:
-        with tempfile.TemporaryDirectory(dir=home, prefix=".video-") as name:
-            work = Path(name)
-            images = _replayed(home / str(episode.log), work / "replay")
-            plan = plan_of(folder, episode.key.scene, episode.key.level)
-            poster: list[Any] = []
-            write_movie(work / VIDEO, _composed(images, episode, plan, poster), _RATE * _SPEED)
-            poster[-1].save(work / POSTER, "JPEG", quality=80)
-            # The video comes last: where it exists, the poster does too.
-            (work / POSTER).replace(home / POSTER)
-            (work / VIDEO).replace(home / VIDEO)
-    except OSError as error:
-        raise gloam.IoError(f"cannot write the video: {error.strerror or error}", str(home / VIDEO)) from error
+
+    def images(work: Path) -> Iterator[Any]:
+        plan = plan_of(folder, episode.key.scene, episode.key.level)
+        return _composed(_replayed(home / str(episode.log), work / "replay"), RouteView(episode, plan, _VIEW), episode)
+
+    return Film(home, episode.key.name, _RATE * _SPEED, images)
 
 
 def _replayed(log: Path, out: Path) -> list[Path]:
@@ -100,10 +70,9 @@ def _replayed(log: Path, out: Path) -> list[Path]:
     return images
 
 
-def _composed(images: list[Path], episode: Episode, plan: Grid | None, last: list[Any]) -> Iterator[Any]:
-    """Images of the video; `last` keeps the last one."""
+def _composed(images: list[Path], route: RouteView, episode: Episode) -> Iterator[Any]:
+    """Images of the video."""
     pillow = require("PIL.Image")
-    route = RouteView(episode, plan, _VIEW)
     times = [t for t, *_ in episode.touches]
     for k, path in enumerate(images):
         now = k / _RATE
@@ -112,5 +81,4 @@ def _composed(images: list[Path], episode: Episode, plan: Grid | None, last: lis
             canvas.paste(own.convert("RGB").resize(_VIEW), (0, _TITLE))
         canvas.paste(route.at(now), (_VIEW[0], _TITLE))
         canvas.paste(route.title(now, bisect_right(times, now), (canvas.width, _TITLE)), (0, 0))
-        last[:] = [canvas]
         yield canvas

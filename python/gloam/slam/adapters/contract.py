@@ -13,7 +13,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from types import TracebackType
-from typing import Any
+from typing import Any, TextIO
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,7 +22,7 @@ Array = NDArray[np.float64]
 
 INITIALIZING, TRACKED, LOST = "initializing", "tracked", "lost"
 STATES = (INITIALIZING, TRACKED, LOST)
-CALIBRATION, POSES, FRAMES = "calibration.json", "poses.tum", "frames.csv"
+CALIBRATION, POSES, FRAMES, FEATURES = "calibration.json", "poses.tum", "frames.csv", "features.txt"
 
 
 @dataclass(frozen=True)
@@ -104,13 +104,13 @@ class Sequence:
 
 
 class Output:
-    """Writes frames.csv while a method runs, and poses.tum at the end.
+    """Writes frames.csv and features.txt while a method runs, and poses.tum at the end.
 
         with Output(folder) as output:
             for stamp, (image,) in sequence.images(("rgb",)):
                 output.begin()
                 … # track
-                output.frame(stamp, TRACKED, pose)
+                output.frame(stamp, TRACKED, pose, pixels)
     """
 
     def __init__(self, folder: str | Path) -> None:
@@ -122,22 +122,29 @@ class Output:
         self._file = (self.folder / FRAMES).open("w", encoding="utf-8", newline="")
         self._rows = csv.writer(self._file, lineterminator="\n")
         self._rows.writerow(["time", "state", "seconds"])
+        self._features: TextIO | None = None
         return self
 
     def begin(self) -> None:
         """The time of the next frame is counted from here, so that reading files does not count."""
         self._begun = time.perf_counter()
 
-    def frame(self, stamp: float, state: str, pose: Array | None = None) -> None:
-        """One frame. pose: (4, 4), of the sensor in the world of the method; it counts if the state is TRACKED."""
+    def frame(self, stamp: float, state: str, pose: Array | None = None, features: Array | None = None) -> None:
+        """One frame. pose: (4, 4), of the sensor in the world of the method; it counts if the state is TRACKED. features: (n, 2)
+        pixels of the left image that the method used, for the video; None = it does not know them."""
         seconds = time.perf_counter() - self._begun
         self._rows.writerow([f"{stamp:.9f}", state, f"{seconds:.6f}"])
         self._file.flush()  # a method that crashes keeps its frames
+        if features is not None:
+            self._features = self._features or (self.folder / FEATURES).open("w", encoding="utf-8")
+            self._features.write(" ".join([f"{stamp:.9f}", *(f"{value:.1f}" for value in features.ravel())]) + "\n")
         if state == TRACKED and pose is not None:
             self.poses[stamp] = np.asarray(pose, np.float64)
 
     def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None) -> None:
         self._file.close()
+        if self._features is not None:
+            self._features.close()
         with (self.folder / POSES).open("w", encoding="utf-8") as file:
             for stamp, pose in sorted(self.poses.items()):
                 x, y, z = pose[:3, 3]

@@ -27,8 +27,10 @@ PATIENCE = 30  # lost frames after which the odometry begins again at its last p
 
 @dataclass
 class View:
-    """Features of an image: pixels (n, 2), descriptors (n, 32), and their points in the camera's frame (n, 3), NaN if unknown."""
+    """Features of an image: raw and undistorted pixels (n, 2), descriptors (n, 32), and their points in the camera's frame (n, 3),
+    NaN if unknown."""
 
+    raw: Array
     pixels: Array
     descriptors: np.ndarray
     points: Array
@@ -46,10 +48,12 @@ class Odometry:
         self._key_pose = np.eye(4)  # of the keyframe in the world
         self._pose = np.eye(4)
         self._lost = 0
+        self.used = np.zeros((0, 2))  # pixels of the features of the last frame that agree with its pose
 
     def track(self, images: tuple[Path, ...]) -> tuple[str, Array | None]:
         """State and pose of the next frame."""
         view = self._view(images)
+        self.used = np.zeros((0, 2))
         if self._key is None:
             self._key = view
             return (INITIALIZING, None) if self._sensors == "mono" else (TRACKED, self._pose)
@@ -82,7 +86,7 @@ class Odometry:
             depth = self._stereo(gray, cv2.imread(str(images[1]), cv2.IMREAD_GRAYSCALE), raw)
         depth = np.where((depth > 0.1) & (depth < FARTHEST), depth, np.nan)
         empty = np.zeros((0, 32), np.uint8)
-        return View(pixels, empty if descriptors is None else descriptors, self._points(pixels, depth))
+        return View(raw, pixels, empty if descriptors is None else descriptors, self._points(pixels, depth))
 
     def _stereo(self, left: np.ndarray, right: np.ndarray, raw: Array) -> Array:
         """Depth of pixels by optical flow along the rows."""
@@ -117,6 +121,7 @@ class Odometry:
         if not found or inliers is None or len(inliers) < FEWEST:
             return None
         chosen = inliers[:, 0]
+        self.used = view.raw[known[chosen, 1]]
         turn, move = cv2.solvePnPRefineLM(points[chosen], pixels[chosen], self._camera.matrix, None, turn, move)
         inverse = np.eye(4)
         inverse[:3, :3], inverse[:3, 3] = cv2.Rodrigues(turn)[0], move[:, 0]
@@ -147,6 +152,7 @@ class Odometry:
             self._key.points[:] = np.nan
             return INITIALIZING, None
         self._pose = self._key_pose @ pose
+        self.used = view.raw[matches[mask[:, 0] != 0, 1]]
         return TRACKED, self._pose
 
     def _triangulated(self, first: Array, second: Array, pose: Array) -> Array:
@@ -209,7 +215,7 @@ def main() -> None:
         for stamp, files in sequence.images(kinds):
             output.begin()
             state, pose = odometry.track(files)
-            output.frame(stamp, state, pose)
+            output.frame(stamp, state, pose, odometry.used)
 
 
 if __name__ == "__main__":

@@ -81,7 +81,20 @@ def track(slam: pyorbslam3.Slam, sequence: Sequence, sensors: str, output: Outpu
         is_tracked = bool(result.pose_valid) and result.state in (pyorbslam3.TrackingState.OK, pyorbslam3.TrackingState.OK_KLT)
         has_tracked |= is_tracked
         state = TRACKED if is_tracked else LOST if has_tracked else INITIALIZING
-        output.frame(stamp, state, np.array(result.pose_wc) if is_tracked else None)
+        pose = np.array(result.pose_wc) if is_tracked else None
+        output.frame(stamp, state, pose, seen(sequence.camera, pose, np.asarray(slam.tracked_map_points(), np.float64)))
+
+
+def seen(camera: Camera | None, pose: Array | None, points: Array) -> Array:
+    """(n, 2) pixels of the points (m, 3) of the map that are in front of a camera with this pose (4, 4)."""
+    inverse = np.linalg.inv(np.eye(4) if pose is None else pose)
+    there = points.reshape(-1, 3) @ inverse[:3, :3].T + inverse[:3, 3]
+    there = there[there[:, 2] > 0]
+    if camera is None or pose is None or not len(there):
+        return np.zeros((0, 2))
+    lens = np.array(camera.distortion or (0.0, 0.0, 0.0, 0.0))
+    pixels: Array = cv2.projectPoints(there, np.zeros(3), np.zeros(3), camera.matrix, lens)[0].reshape(-1, 2)
+    return pixels
 
 
 def final_poses(file: Path, tracked: dict[float, Array], camera_in_body: Array) -> dict[float, Array]:
