@@ -128,7 +128,7 @@ def bench(tmp_path_factory: pytest.TempPathFactory) -> Path:
     slide(case)
     (case / "visibility.csv").write_text("time_s,visibility_m,extinction_1_m\n1.0,39.12,0.1\n3.0,39.12,0.1\n")
     request = {"methods": ["noisy_truth"], "scenes": ["a"], "levels": ["none"], "runs": 3, "seed": 1, "width": 320, "height": 240}
-    request |= {"rate": 20, "tier": "direct"} | dict.fromkeys(("started", "version", "machine"), "")
+    request |= {"rate": 20, "tier": "direct"} | dict.fromkeys(("started", "version", "machine", "log"), "")
     (out / "request.json").write_text(json.dumps(request))
     truth = (case / "truth.tum").read_text().splitlines()
     for number, count in enumerate((40, 20, 0)):

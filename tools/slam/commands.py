@@ -38,7 +38,8 @@ _EXAMPLES = """\
 Examples:
   gloam slam install opencv
   gloam bench slam --methods odometry_mono,odometry_rgbd --scenes house --runs 1 --out results/slam
-  gloam bench slam --methods orb_slam3_mono,my_method.toml --levels none,minor,major,dark"""
+  gloam bench slam --methods orb_slam3_mono,my_method.toml --levels none,minor,major,dark
+  gloam bench slam --log run.mcap --camera go/front --out results/my_run"""
 
 
 def _add_bench(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
@@ -52,7 +53,9 @@ def _add_bench(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     )
     option = command.add_argument
     option("--methods", default="odometry_mono,odometry_rgbd", help="names of `gloam slam methods`, or TOML files; default: %(default)s")
-    option("--scenes", default="house,warehouse", help="also office, tunnel, mine and terrain; default: %(default)s")
+    option("--scenes", help="of house, warehouse, office, tunnel, mine and terrain; default: house,warehouse")
+    option("--log", help="log of a run (MCAP) whose motion and scene replace the tours")
+    option("--camera", default="", help="of the log's robot; default: its stereo pair, or its first camera")
     option("--levels", default="none,minor,major", help="also dark; default: %(default)s")
     option("--runs", "--n", type=int, default=10, help="of each method, scene and level; default: %(default)s")
     option("--seed", type=int, default=1, help="default: %(default)s")
@@ -76,7 +79,11 @@ def _bench(given: argparse.Namespace) -> int:
     from gloam.slam.report import write_report
     from gloam.slam.videos import render_videos
 
-    names = [tuple(filter(None, text.split(","))) for text in (given.methods, given.scenes, given.levels)]
+    if given.log and given.scenes:
+        raise gloam.UsageError("--log names the only scene; leave out --scenes")
+    if given.camera and not given.log:
+        raise gloam.UsageError("--camera is the camera of a --log")
+    names = [tuple(filter(None, text.split(","))) for text in (given.methods, given.scenes or "house,warehouse", given.levels)]
     width, _, height = given.resolution.partition("x")
     if not (width.isdigit() and height.isdigit()):
         raise gloam.UsageError(f"--resolution is WIDTHxHEIGHT, got {given.resolution}")
@@ -84,6 +91,8 @@ def _bench(given: argparse.Namespace) -> int:
         *names, given.runs, given.seed, given.legs, given.duration, given.tier, int(width), int(height), given.rate, given.limit,
         given.vocabulary,
     )  # fmt: skip
+    if given.log:
+        request = request.of_log(Path(given.log), given.camera)
     if given.workers < 1:
         raise gloam.UsageError("--workers must be at least 1")
     out = Path(given.out)

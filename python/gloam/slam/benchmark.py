@@ -9,9 +9,9 @@ from __future__ import annotations
 import json
 import shutil
 import subprocess
-from collections.abc import Callable
+from collections.abc import Callable, Collection, Iterable
 from concurrent.futures import ThreadPoolExecutor, as_completed
-from dataclasses import asdict, dataclass, fields
+from dataclasses import asdict, dataclass, fields, replace
 from pathlib import Path
 from typing import Any
 
@@ -23,18 +23,21 @@ from gloam.experiments.checks import Fields, read_object
 from gloam.experiments.files import locked, remove_parts, whole
 from gloam.experiments.request import REQUEST_FILE, STAMP, check_known, check_once, keep_request
 from gloam.experiments.words import Remaining
+from gloam.navigation.benchmark.floor_plan import plan_file
+from gloam.navigation.benchmark.options import file_of
 from gloam.navigation.benchmark.places import ALL_LEVELS, LEVELS, PLACES
 
 from .estimate import read_tum
 from .methods import Method, load_method, opencv_python
+from .recorded import examine, scene_name
 from .results import OUTCOME, Key, case_of
 from .run import run_method
 from .sequence import TRUTH, Condition, make_sequence
-from .tour import Tour, record_tour
+from .tour import TOUR_SENSORS, Sensors, Tour, record_tour
 
 VOCABULARY, OVERLAYS = "vocabulary.txt", "overlays"
 _PARTS = ("tours", "cases/*", "runs/*/*/*")  # parents of folders that appear when they are complete
-_MAY_DIFFER = STAMP | {"methods", "runs"}  # between the calls that continue a benchmark
+_MAY_DIFFER = STAMP | {"methods", "runs", "log"}  # between the calls that continue a benchmark
 Tell = Callable[[str], None]
 
 
@@ -44,7 +47,9 @@ class Request:
 
     methods: names, or TOML files; levels: of adversity, or scene files that are applied instead; legs, duration [s] (None = all):
     of the tours; tier, width, height, rate: of the images; limit: time that a run may take, per second of its sequence;
-    vocabulary: file for ORB-SLAM, "" = made from the images in clear air; machine, version, started: text for the page.
+    vocabulary: file for ORB-SLAM, "" = made from the images in clear air; log, log_hash: file with the run that is the only scene's
+    tour, "" = tours are recorded, and its content (of_log); camera: of its robot, "" = the first one; machine, version, started:
+    text for the page.
     """
 
     methods: tuple[str, ...]
@@ -60,13 +65,17 @@ class Request:
     rate: float = 20.0
     limit: float = 20.0
     vocabulary: str = ""
+    log: str = ""
+    log_hash: str = ""
+    camera: str = ""
     machine: str = ""
     version: str = ""
     started: str = ""
 
     def check(self) -> None:
         """Errors: NotFoundError for an unknown scene or level; UsageError for names twice and numbers out of range."""
-        check_known("scene", self.scenes, PLACES)
+        if not self.log:
+            check_known("scene", self.scenes, PLACES)
         check_known("level", [level for level in self.levels if not level.endswith(".toml")], ALL_LEVELS)
         for kind, asked in (("method", self.methods), ("scene", self.scenes), ("level", self.level_names)):
             check_once(kind, asked)
@@ -74,6 +83,11 @@ class Request:
             raise gloam.UsageError("expected 1 to 10000 runs, 1 to 20 legs, and a seed from 0 to 2^32 - 1")
         if not (16 <= self.width <= 4096 and 16 <= self.height <= 4096 and 0.1 <= self.rate <= 1000 and 0 < self.limit <= 1e6):
             raise gloam.UsageError("expected images of 16 to 4096 pixels, a rate of 0.1 to 1000 Hz and a limit above 0")
+
+    def of_log(self, log: Path, camera: str) -> Request:
+        """The same with the run of a log as its tour. Errors: gloam.UsageError if the file cannot be read."""
+        file = file_of(log)
+        return replace(self, scenes=(scene_name(log),), log=file.name, log_hash=file.sha256[:16], camera=camera)
 
     @property
     def level_names(self) -> tuple[str, ...]:
@@ -125,7 +139,7 @@ def run(request: Request, out: Path, workers: int = 1, tell: Tell | None = None)
     with locked(out):
         remove_parts(out, *_PARTS)
         request.keep(out)
-        _make_cases(request, {method.sensors.removesuffix("_imu") for method in methods.values()}, out, say)
+        _make_cases(request, methods.values(), out, say)
         vocabulary = _vocabulary(request, methods, out, say)
         keys = [Key(m, s, v, n) for n in range(request.runs) for s in request.scenes for v in request.level_names for m in methods]
         missing = [key for key in keys if not _file(out, key).is_file()]
@@ -146,22 +160,43 @@ def _file(out: Path, key: Key) -> Path:
     return out / "runs" / key.path / OUTCOME
 
 
+_SENSOR_NAMES = {"stereo": "a stereo pair", "lidar": "a LiDAR", "imu": "a calibrated IMU"}
 _SENSOR_FILES = {"stereo": "right.txt", "lidar": "scans.txt"}  # of sequences that have these sensors
 
 
-def _make_cases(request: Request, sensors: set[str], out: Path, say: Tell) -> None:
+def _tour(request: Request, scene: str, out: Path, say: Tell) -> tuple[Path, Sensors]:
+    """The log of a scene's tour, which is recorded if it is missing, and the sensors of its robot."""
+    tour = out / "tours" / scene
+    if not tour.is_dir():
+        say(f"examining {request.log}" if request.log else f"recording a tour of {scene}")
+        with whole(tour) as part:
+            if request.log:
+                sensors, length = examine(Path(request.log), request.camera, plan_file(out, scene, "none"))
+            else:
+                sensors, length = TOUR_SENSORS, record_tour(Tour(scene, request.seed, request.legs), part / "tour.mcap")
+            write_json(part / "tour.json", {"length": length, "sensors": asdict(sensors)})
+    kept = read_object(tour / "tour.json")
+    return Path(request.log) if request.log else tour / "tour.mcap", Sensors(**kept["sensors"])
+
+
+def _check_sensors(methods: Iterable[Method], sensors: Sensors) -> None:
+    """Errors: gloam.UsageError for a method that needs a sensor which the robot lacks."""
+    has = {"stereo": sensors.right, "lidar": sensors.lidar, "imu": sensors.imu}
+    for method in methods:
+        for kind in set(method.sensors.split("_")) & set(has):
+            if not has[kind]:
+                raise gloam.UsageError(f"method '{method.name}' needs {_SENSOR_NAMES[kind]}, which the log does not have")
+
+
+def _make_cases(request: Request, methods: Collection[Method], out: Path, say: Tell) -> None:
     """Tours and sequences that are missing, or that lack a sensor: images are expensive, so only methods that read the right
     camera or the LiDAR get them. A sequence that is made again has the same images."""
-    needed = {"exists"} | (set(_SENSOR_FILES) & sensors)
+    needed = {"exists"} | (set(_SENSOR_FILES) & {method.sensors.removesuffix("_imu") for method in methods})
     missing = [(s, v) for s in request.scenes for v in request.level_names if not needed <= _sensors_of(case_of(out, s, v))]
     remaining = Remaining(len(missing))
     for done, (scene, level) in enumerate(missing):
-        tour = out / "tours" / scene
-        if not tour.is_dir():
-            say(f"recording a tour of {scene}")
-            with whole(tour) as part:
-                length = record_tour(Tour(scene, request.seed, request.legs), part / "tour.mcap")
-                write_json(part / "tour.json", {"length": length})
+        log, sensors = _tour(request, scene, out, say)
+        _check_sensors(methods, sensors)
         say(f"sequence {done + 1} of {len(missing)}: {scene}, {level}{remaining.after(done)}")
         case = case_of(out, scene, level)
         has = {kind: kind in needed | _sensors_of(case) for kind in _SENSOR_FILES}
@@ -171,7 +206,7 @@ def _make_cases(request: Request, sensors: set[str], out: Path, say: Tell) -> No
             request.duration, has["stereo"], has["lidar"],
         )  # fmt: skip
         with whole(case) as part:
-            make_sequence(tour / "tour.mcap", condition, part)
+            make_sequence(log, condition, part, sensors)
             shutil.rmtree(case, ignore_errors=True)
 
 

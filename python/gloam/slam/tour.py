@@ -11,7 +11,7 @@ import numpy as np
 
 import gloam
 from gloam.navigation.benchmark.places import EYE, LIDAR, PLACES, ROBOT, Course, quadruped
-from gloam.navigation.benchmark.visibility import visibility_probe
+from gloam.navigation.benchmark.visibility import PROBE, visibility_probe
 from gloam.navigation.driver import Driver, Rig
 from gloam.navigation.planner import Task
 from gloam.navigation.planners.geometric import Route
@@ -27,6 +27,28 @@ REACH = {"tunnel": (30.0, 45.0), "mine": (30.0, 45.0)}  # length of a path [m]; 
 _SPEED = 0.4  # [m/s]
 _REACH = 0.4  # of a goal [m]
 _STAND = 0.3  # the trunk's height above the ground at the start [m]
+
+
+@dataclass(frozen=True)
+class Sensors:
+    """Of the robot of a log, by their names. left, right: cameras, right = "": one camera; baseline: [m]; lidar: "" = none; imu:
+    topic, "" = none; begin: of the sequence in the log [s]; probe: of the visibility; overlay: text of a scene file that adds
+    it, "" = the log has it; clutter: of the place, which levels must not change, None = none; has_people: in the run."""
+
+    left: str
+    right: str
+    baseline: float
+    lidar: str
+    imu: str
+    begin: float
+    probe: str
+    overlay: str
+    clutter: float | None
+    has_people: bool
+
+
+# 0.5 is the clutter of all generated places, by default.
+TOUR_SENSORS = Sensors(LEFT, RIGHT, BASELINE, LIDAR, IMU_TOPIC, BEGIN, PROBE, "", 0.5, False)
 
 
 @dataclass(frozen=True)
