@@ -117,8 +117,9 @@ class Request:
         mine: dict[str, Any] = json.loads(json.dumps({**asdict(self), "levels": self.level_names}))
         known = read_object(file) if file.is_file() else mine
         kept = Fields(known, file)
-        names = [field.name for field in fields(self) if field.name not in _MAY_DIFFER]
-        different = [f"{name} {known.get(name)} and {mine[name]}" for name in names if known.get(name) != mine[name]]
+        # Folders of earlier versions lack fields whose values were the defaults.
+        before = {field.name: known.get(field.name, field.default) for field in fields(self) if field.name not in _MAY_DIFFER}
+        different = [f"{name} {value} and {mine[name]}" for name, value in before.items() if value != mine[name]]
         mine |= {"methods": list(dict.fromkeys([*kept.value("methods"), *self.methods])), "runs": max(self.runs, kept.integer("runs"))}
         keep_request(out, mine, different, kept.text("started"))
 
@@ -176,7 +177,7 @@ def _tour(request: Request, scene: str, out: Path, say: Tell) -> tuple[Path, Sen
                 sensors, length = TOUR_SENSORS, record_tour(Tour(scene, request.seed, request.legs), part / "tour.mcap")
             write_json(part / "tour.json", {"length": length, "sensors": asdict(sensors)})
     kept = read_object(tour / "tour.json")
-    return Path(request.log) if request.log else tour / "tour.mcap", Sensors(**kept["sensors"])
+    return Path(request.log) if request.log else tour / "tour.mcap", Sensors(**kept.get("sensors", asdict(TOUR_SENSORS)))
 
 
 def _check_sensors(methods: Iterable[Method], sensors: Sensors) -> None:
