@@ -15,6 +15,7 @@ from gloam.navigation.grid import Grid
 
 from .adapters.contract import INITIALIZING, LOST, TRACKED
 from .estimate import Array, Trajectory, read_run, read_tum
+from .lidar_extinction import extinction_of_scans
 from .methods import load_method
 from .results import Key, case_of
 from .sequence import TRUTH, TRUTH_LIDAR, VISIBILITY
@@ -94,14 +95,18 @@ def aligned(estimate: Trajectory, truth: Trajectory, is_metric: bool) -> np.ndar
 
 
 def tracking_chart(out: Path, scene: str, levels: tuple[str, ...], methods: tuple[str, ...]) -> str:
-    """SVG text: the extinction at the camera, and the state of every frame of the first run, a bar per level and method."""
+    """SVG text: the extinction by the probe at the camera and, dashed, by the LiDAR, where it has scans in clear air too; the state of
+    every frame of the first run, a bar per level and method."""
     rows = [(load_method(name).name, level) for level in levels for name in methods]
     height = 0.22 * len(rows)
     with Chart(9.0, 2.2 + height, f"tracking {scene}") as chart:
         above, axis = chart.figure.subplots(2, 1, sharex=True, height_ratios=[1.4, max(height, 0.5)])
         for level in levels:
             time, _, extinction = visibility(case_of(out, scene, level)).T
-            above.plot(time, extinction, label=level, color=LEVEL_COLORS[levels.index(level) % len(LEVEL_COLORS)])
+            color = LEVEL_COLORS[levels.index(level) % len(LEVEL_COLORS)]
+            above.plot(time, extinction, label=level, color=color)
+            by_lidar = extinction_of_scans(case_of(out, scene, level), case_of(out, scene, "none"))
+            above.plot(*by_lidar.T, color=color, linestyle="--")
         above.set_ylabel("extinction [1/m]")
         above.legend(frameon=False)
         for y, (name, level) in enumerate(rows):
