@@ -69,8 +69,7 @@ def tour_scene(place: str) -> gloam.Scene:
     """
     if place not in PLACES:
         raise gloam.NotFoundError(f"there is no scene '{place}'; there are: {', '.join(PLACES)}")
-    # The mean counts bright windows with all their light, where a camera's meter saturates.
-    exposure = {"time_constant": 0.3, "metering": "average", "compensation": 2.0, "max_shutter": 0.02, "max_iso": 6400}
+    exposure = {"time_constant": 0.3, "metering": "average", "compensation": 0.7, "max_shutter": 0.02, "max_iso": 6400}
     pixel = {"full_well": 10500, "quantum_efficiency": 0.62, "pitch": 3.45, "shot_noise": True, "read_noise": 2.4, "bits": 10}
     camera: dict[str, Any] = {
         "width": 640, "height": 480, "rate": 20, "fovy": 60,
