@@ -70,7 +70,8 @@ def tour_scene(place: str) -> gloam.Scene:
     if place not in PLACES:
         raise gloam.NotFoundError(f"there is no scene '{place}'; there are: {', '.join(PLACES)}")
     exposure = {"time_constant": 0.3, "metering": "average", "compensation": 0.7, "max_shutter": 0.02, "max_iso": 6400}
-    pixel = {"full_well": 10500, "quantum_efficiency": 0.62, "pitch": 3.45, "shot_noise": True, "read_noise": 2.4, "bits": 10}
+    # White at ISO 100 takes 9,600 electrons: a smaller full well would show it grey.
+    pixel = {"full_well": 10500, "quantum_efficiency": 0.62, "pitch": 2.2, "shot_noise": True, "read_noise": 2.4, "bits": 10}
     camera: dict[str, Any] = {
         "width": 640, "height": 480, "rate": 20, "fovy": 60,
         "imager": {"exposure": {"f_number": 2.0}, "auto_exposure": exposure, "pixel": pixel},
