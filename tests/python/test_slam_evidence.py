@@ -1,7 +1,8 @@
-"""Small runs of real methods: adversity costs vision its track, darkness costs LiDAR nothing."""
+"""Small runs of real methods: adversity costs vision its track, darkness costs LiDAR nothing, and smoke costs it its returns."""
 
 from __future__ import annotations
 
+import shutil
 from pathlib import Path
 from typing import Any
 
@@ -51,3 +52,22 @@ def test_darkness_costs_lidar_nothing(rows: dict[tuple[str, str], dict[str, Any]
     scans = [case_of(out, "house", level) / "sequence" / "scans" / "000012.bin" for level in LEVELS]
     assert scans[0].read_bytes() == scans[2].read_bytes() != scans[1].read_bytes()
     assert np.fromfile(scans[0], np.float32).reshape(-1, 5).shape[0] > 20_000
+
+
+@pytest.mark.slow
+def test_smoke_costs_lidar_its_track_as_it_costs_returns(rows: dict[tuple[str, str], dict[str, Any]], tmp_path: Path) -> None:
+    """The same tour in smoke of a given visibility; images are small, since no method reads them."""
+    shutil.copytree(rows["folder", ""]["path"] / "tours", tmp_path / "out" / "tours")
+    for name, visibility in (("hazy", 1.5), ("thick", 0.8)):
+        (tmp_path / f"{name}.toml").write_text(f"[weather]\nvisibility = {visibility}\nmedium = 'smoke'\n")
+    levels = tuple(str(tmp_path / f"{name}.toml") for name in ("hazy", "thick"))
+    request = Request(("kiss_icp",), ("house",), levels, 1, legs=1, duration=4.0, tier="direct", width=16, height=16, rate=5)
+    found = {row["level"]: row["measures"] for row in run(request, tmp_path / "out")}
+    clear, hazy, thick = rows["kiss_icp", "none"], found["hazy"], found["thick"]
+    folders = [case_of(rows["folder", ""]["path"], "house", "none"), *(case_of(tmp_path / "out", "house", v) for v in ("hazy", "thick"))]
+    returns = [[file.stat().st_size // 20 for file in sorted((f / "sequence" / "scans").glob("*.bin"))] for f in folders]
+    mean = [float(np.mean(counts)) for counts in returns]
+    assert mean[1] < 0.4 * mean[0] and mean[2] < 0.05 * mean[0]
+    assert hazy["tracked"] == 1 and hazy["rpe"] > 2 * clear["rpe"] and hazy["ate_se3"] > 2 * clear["ate_se3"]
+    assert thick["tracked"] == pytest.approx(np.mean(np.array(returns[2]) >= 100)) and thick["tracked"] < 0.5
+    assert thick["completeness"] < 0.5
