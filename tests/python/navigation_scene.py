@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any
 
 import gloam
 from gloam.envs.assets import asset_folder
 
 
-def arena(**tables: Any) -> gloam.Scene:
-    """The scene, with further tables."""
+def arena(folder: Path | None = None, **tables: Any) -> gloam.Scene:
+    """The scene, with further tables. folder: of its files; default: the assets."""
     robot = {
         "name": "go",
         "file": "robots/quadruped/quadruped.xml",
@@ -26,4 +27,4 @@ def arena(**tables: Any) -> gloam.Scene:
         "light": [lamp],
         "lidar": [lidar],
     }
-    return gloam.Scene.from_dict(base | tables, folder=asset_folder())
+    return gloam.Scene.from_dict(base | tables, folder=folder or asset_folder())

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shutil
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -103,11 +104,12 @@ def test_logs_that_cannot_be_tours(log: Path, tmp_path: Path) -> None:
 
 
 def test_a_scene_that_has_changed(tmp_path: Path) -> None:
-    text = (asset_folder() / "environments/arena/arena.xml").read_text()
-    (tmp_path / "arena.xml").write_text(text)
-    log = record(tmp_path / "run.mcap", arena(environment={"file": str(tmp_path / "arena.xml")}))
+    for folder in ("environments/arena", "robots/quadruped"):
+        shutil.copytree(asset_folder() / folder, tmp_path / folder)
+    model = tmp_path / "environments/arena/arena.xml"
+    log = record(tmp_path / "run.mcap", arena(tmp_path))
     examine(log, "", tmp_path / "plan.npz")
-    (tmp_path / "arena.xml").write_text(text.replace("</worldbody>", '<geom type="box" size=".1 .1 .1" pos="1 1 .1"/></worldbody>'))
+    model.write_text(model.read_text().replace("</worldbody>", '<geom type="box" size=".1 .1 .1" pos="1 1 .1"/></worldbody>'))
     with pytest.raises(gloam.Error, match="arena.xml"):
         examine(log, "", tmp_path / "plan.npz")
 
