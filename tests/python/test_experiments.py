@@ -45,7 +45,7 @@ def test_one_process_at_a_time_uses_a_folder(tmp_path: Path) -> None:
         pass
     (tmp_path / "file").touch()
     with pytest.raises(gloam.IoError, match="cannot write into the folder"), locked(tmp_path / "file"):
-        pytest.fail("a file is no folder")
+        pytest.fail("a file was locked as a folder")
 
 
 def test_requests_are_checked_and_kept(tmp_path: Path) -> None:

@@ -51,7 +51,7 @@ def test_cams_and_networks_equal_pytorch(run_python: Any) -> None:
     fetched = packages()
     source = next(fetched.glob("grad_cam-*/"))
     folders = [ROOT / "python", torch, ROOT / "tools" / "real", HERE, ROOT / "tests", source]
-    # Last: NumPy and others are those of the environment.
+    # The fetched packages come last, so that NumPy is imported from the test environment.
     path = os.pathsep.join(str(folder) for folder in [*folders, fetched / "packages"])
     code = (HERE / "real_torch.py").read_text(encoding="utf-8")
     told = run_python(

@@ -151,7 +151,7 @@ class Tokenizer:
         self._ranks = {pair: k for k, pair in enumerate(merges)}
 
     def encode(self, text: str) -> list[int]:
-        """Numbers of the tokens with those of start and end. Errors: CheckpointError for a text that is too long."""
+        """Token numbers of a text, between the start and the end token. Errors: CheckpointError for a text that is too long."""
         letters = _bytes_as_letters()
         tokens = []
         for word in re.findall(r"'s|'t|'re|'ve|'m|'ll|'d|[^\W\d_]+|\d|[^\s\w]+|_+", " ".join(text.lower().split())):

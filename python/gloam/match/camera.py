@@ -11,7 +11,7 @@ from scipy.spatial.transform import Rotation
 
 Array = NDArray[np.float64]
 
-# From the camera's axes in MuJoCo (looks along -Z, +Y up) to those of the optical frame (X right, Y down, Z forward).
+# Rotates MuJoCo's camera axes (X right, Y up, looking along -Z) to the optical frame (X right, Y down, Z forward).
 OPTICAL = np.diag([1.0, -1.0, -1.0])
 NEAREST = 1e-6  # depth at which points in front of the camera begin [m]
 

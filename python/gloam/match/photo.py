@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from PIL import Image, ImageCms, ImageOps, UnidentifiedImageError
 
 import gloam
+from gloam.real.flip import linear as from_srgb
 
 from .camera import Array
 
@@ -51,11 +52,6 @@ class Photo:
         return made, share == 0
 
 
-def from_srgb(values: Array) -> Array:
-    """Linear light of sRGB values 0 … 1 (IEC 61966-2-1)."""
-    return np.where(values <= 0.04045, values / 12.92, ((values + 0.055) / 1.055) ** 2.4)
-
-
 def to_srgb(light: Array) -> NDArray[np.uint8]:
     """8-bit sRGB of linear light 0 … 1; other values are clipped."""
     light = np.clip(light, 0, 1)
@@ -69,7 +65,7 @@ _TO_LIGHT = from_srgb(np.arange(256) / 255).astype(np.float32)
 def load_photo(path: Path) -> Photo:
     """A photograph, turned upright as its EXIF orientation requires, with its colour profile converted to sRGB.
 
-    Errors: gloam.IoError; InputError if it is no image, has more than MOST_PIXELS, or a side above LONGEST_SIDE.
+    Errors: gloam.IoError; InputError if the file is not an image, has more than MOST_PIXELS, or a side longer than LONGEST_SIDE.
     """
     image = _open(path, "photograph")
     if image.mode.startswith(("I", "F")):

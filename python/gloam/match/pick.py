@@ -20,10 +20,10 @@ from PIL import Image
 
 import gloam
 from gloam.experiments.files import replace_file
+from gloam.experiments.page import render_page
 
 from .camera import OPTICAL, Lens
 from .edges import Picture
-from .page import render_template
 from .pairs import Pair, scene_points
 from .photo import Photo
 from .view import Quality
@@ -66,10 +66,11 @@ def write_pick_page(
     picture = photo.image if scale == 1 else photo.resized(round(photo.width * scale), round(photo.height * scale))
     scripts = "".join(Path(__file__).with_name(name).read_text(encoding="utf-8") for name in _SCRIPTS)
     # "<" cannot end the script element.
-    text = render_template(
-        Path(__file__).with_name("pick.html"), title=f"{photo.path.name} in {scene.name}", photo=_jpeg(picture),
-        state=json.dumps(state).replace("<", "\\u003c"), script=scripts,
-    )  # fmt: skip
+    values = {
+        "title": f"{photo.path.name} in {scene.name}", "photo": _jpeg(picture),
+        "state": json.dumps(state).replace("<", "\\u003c"), "script": scripts,
+    }  # fmt: skip
+    text = render_page(Path(__file__).with_name("pick.html"), values)
     return replace_file(out, lambda path: path.write_text(text, encoding="utf-8"))
 
 

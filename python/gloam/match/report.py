@@ -13,9 +13,9 @@ from PIL import Image
 
 import gloam
 from gloam.experiments.files import replace_file
+from gloam.experiments.page import render_page
 
 from .edges import Picture
-from .page import render_template
 
 if TYPE_CHECKING:
     from .match import Match, Request
@@ -33,11 +33,11 @@ _CAPTIONS = {
 
 def write_page(made: Match, request: Request) -> Path:
     """Writes match.html. Errors: gloam.UnsupportedError without jinja2; gloam.IoError."""
-    text = render_page(made, request)
+    text = _html(made, request)
     return replace_file(request.out / PAGE, lambda path: path.write_text(text, encoding="utf-8"))
 
 
-def render_page(made: Match, request: Request) -> str:
+def _html(made: Match, request: Request) -> str:
     """The page as HTML without external requests. All names are escaped."""
     solution = made.solution
     rows = [
@@ -46,20 +46,20 @@ def render_page(made: Match, request: Request) -> str:
         for i, pair in enumerate(made.pairs)
     ]  # fmt: skip
     lens = solution.camera.lens
-    return render_template(
-        Path(__file__).with_name("report.html"),
-        made=made,
-        scene=request.scene.name,
-        solution=solution,
-        lens=lens,
-        solved=solution.unknowns.lens_names,
-        fovy_error=math.degrees(_fovy_slope(lens.f, lens.height) * solution.focal_error),
-        turn_error=[math.degrees(v) for v in solution.turn_error],
-        errors=dict(zip(solution.names, np.sqrt(np.diag(solution.covariance)), strict=True)),
-        rows=rows,
-        pictures={name: (_uri(made.pictures[name]), caption) for name, caption in _CAPTIONS.items()},
-        version=gloam.__version__,
-    )
+    values = {
+        "made": made,
+        "scene": request.scene.name,
+        "solution": solution,
+        "lens": lens,
+        "solved": solution.unknowns.lens_names,
+        "fovy_error": math.degrees(_fovy_slope(lens.f, lens.height) * solution.focal_error),
+        "turn_error": [math.degrees(v) for v in solution.turn_error],
+        "errors": dict(zip(solution.names, np.sqrt(np.diag(solution.covariance)), strict=True)),
+        "rows": rows,
+        "pictures": {name: (_uri(made.pictures[name]), caption) for name, caption in _CAPTIONS.items()},
+        "version": gloam.__version__,
+    }
+    return render_page(Path(__file__).with_name("report.html"), values)
 
 
 def _fovy_slope(f: float, height: int) -> float:

@@ -1,6 +1,6 @@
 """Cameras to start from: poses that map three pairs exactly, for a sweep of focal lengths, ranked by all pairs.
 
-The pose of three points is that of Grunert (1841) in the form of Haralick et al. 1991, "Analysis and Solutions of the Three Point
+The pose of three points follows Grunert (1841) in the form of Haralick et al. 1991, "Analysis and Solutions of the Three Point
 Perspective Pose Estimation Problem"; the ranking is MSAC (Torr and Zisserman 2000), which a few wrong pairs do not mislead.
 """
 

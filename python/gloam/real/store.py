@@ -27,7 +27,7 @@ class Store:
         return self._root / kind / key[:2] / f"{key}.npz"
 
     def load(self, kind: str, key: str) -> Arrays | None:
-        """None if there is no record, or if it is damaged."""
+        """The record, or None if it is missing or damaged."""
         try:
             with np.load(self.file(kind, key), allow_pickle=False) as file:
                 return {name: file[name] for name in file.files}
