@@ -1,8 +1,6 @@
 // A road tunnel: an arch along a curved path, road and walkways, lamps, pipes, emergency stations,
 // and a portal at either end.
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 
@@ -43,7 +41,7 @@ class TunnelBuilder {
     add_lamps();
     add_stations();
     add_clutter();
-    add_regions();
+    place_.regions = path_.regions("road", o_.width, o_.height);
     place_.sky = draw_sky(&dice_, true);
     place_.ev100 = 5;
     return std::move(place_);
@@ -112,13 +110,7 @@ class TunnelBuilder {
     Prop road;
     PropPart& b = road.body();
     b.show("asphalt", shop->asphalt(), path_.strip(from, to, {edge, 0}, {-edge, 0}));
-    // All is level: one box from end to end.
-    Vec3f low{1e9f, 1e9f, -0.5f}, high{-1e9f, -1e9f, 0};
-    for (const Station& k : path_.stations()) {
-      low = {std::min(low.x, float(k.x)), std::min(low.y, float(k.y)), low.z};
-      high = {std::max(high.x, float(k.x)), std::max(high.y, float(k.y)), high.z};
-    }
-    b.collide_box({low.x - 30, low.y - 30, low.z}, {high.x + 30, high.y + 30, 0});
+    path_.collide_ground(&b, 30);
     put("road", std::move(road));
 
     Prop lines;
@@ -153,7 +145,7 @@ class TunnelBuilder {
     Prop p;
     PropPart& b = p.body();
     const auto along = [&](double left, double z, double radius) {
-      return path_.cable(0.5, o_.length - 0.5, {float(left), float(z)}, radius);
+      return path_.cable(0.5, o_.length - 0.5, {left, z}, radius);
     };
     const double z = std::min(wall_ - 0.2, 2.75);
     b.show("main", shop->paint({0.50, 0.07, 0.06}, 0.4), along(half_ - 0.12, z, 0.06));
@@ -318,18 +310,6 @@ class TunnelBuilder {
         const double turned = kind == "safety_barrier" ? 0 : dice_.uniform(-0.3, 0.3);
         place_.put(thing, "", path_.pose(s, lane, 0, turned), loose);
       }
-    }
-  }
-
-  void add_regions() {
-    const int count = std::max(1, static_cast<int>(std::lround(o_.length / 10)));
-    for (int i = 0; i < count; ++i) {
-      const Station a = path_.at(o_.length * i / count), b = path_.at(o_.length * (i + 1) / count);
-      const double grow = o_.width * 0.25;
-      place_.regions.push_back({fmt::format("road_{}", i + 1),
-                                "road",
-                                {std::min(a.x, b.x), std::min(a.y, b.y) - grow, 0},
-                                {std::max(a.x, b.x), std::max(a.y, b.y) + grow, o_.height}});
     }
   }
 

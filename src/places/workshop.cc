@@ -68,6 +68,15 @@ PatternOptions noise(Vec3 color_a, Vec3 color_b, double scale, double depth, dou
   return p;
 }
 
+PatternOptions dirt(Vec3 color, double scale, double amount) {
+  PatternOptions p;
+  p.kind = "dirt";
+  p.color_b = color;
+  p.scale = scale;
+  p.amount = amount;
+  return p;
+}
+
 Look plain(std::string name, Vec3 color, double roughness, double metallic = 0) {
   Look look;
   look.name = std::move(name);
@@ -301,12 +310,7 @@ std::string Workshop::earth() {
 std::string Workshop::gravel() {
   Look look = patterned(
       "gravel", noise({0.050, 0.044, 0.036}, {0.140, 0.124, 0.102}, 0.022, 0.006, 0.95, "cells"));
-  PatternOptions dirt;
-  dirt.kind = "dirt";
-  dirt.color_b = Vec3{0.116, 0.102, 0.082};
-  dirt.scale = 0.8;
-  dirt.amount = 0.42;
-  look.more.wear = dirt;
+  look.more.wear = dirt({0.116, 0.102, 0.082}, 0.8, 0.42);
   return add(std::move(look));
 }
 
@@ -330,24 +334,14 @@ std::string Workshop::turf() {
 std::string Workshop::bedrock() {
   Look look = patterned("bedrock", noise({0.042, 0.040, 0.036}, {0.125, 0.119, 0.108}, 0.16, 0.014,
                                          0.9, "turbulence"));
-  PatternOptions lichen;
-  lichen.kind = "dirt";
-  lichen.color_b = Vec3{0.095, 0.098, 0.055};
-  lichen.scale = 0.12;
-  lichen.amount = 0.36;
-  look.more.wear = lichen;
+  look.more.wear = dirt({0.095, 0.098, 0.055}, 0.12, 0.36);
   return add(std::move(look));
 }
 
 std::string Workshop::blasted_rock() {
   Look look = patterned("blasted_rock", noise({0.050, 0.045, 0.040}, {0.165, 0.152, 0.136}, 0.35,
                                               0.03, 0.85, "turbulence"));
-  PatternOptions dust;
-  dust.kind = "dirt";
-  dust.color_b = Vec3{0.210, 0.192, 0.168};
-  dust.scale = 0.5;
-  dust.amount = 0.3;
-  look.more.wear = dust;
+  look.more.wear = dirt({0.210, 0.192, 0.168}, 0.5, 0.3);
   return add(std::move(look));
 }
 

@@ -93,12 +93,12 @@ class Fittings {
     const double left = duct_side_ * rock_.half() * 0.36;
     const double z = rock_.crown(left) - o_.relief - radius - 0.1;
     b.show("duct", shop->fabric({0.62, 0.42, 0.09}, 0.004),
-           rock_.path().cable(2, end, {float(left), float(z)}, radius, 20));
+           rock_.path().cable(2, end, {left, z}, radius, 20));
     const std::string strap = shop->rubber(), steel = shop->metal("galvanised");
     for (double s = 2.5; s < end; s += 2.5) {
       const CurvedPath::Station k = rock_.path().at(s);
       b.show("straps", strap,
-             rock_.path().cable(s - 0.02, s + 0.02, {float(left), float(z)}, radius + 0.006, 20));
+             rock_.path().cable(s - 0.02, s + 0.02, {left, z}, radius + 0.006, 20));
       b.show("hangers", steel,
              bar(CurvedPath::point(k, left, z + radius),
                  CurvedPath::point(k, left, rock_.crown(left) + o_.relief), 0.006f, 0.006f, 5));
@@ -108,9 +108,8 @@ class Fittings {
                                                     {1.80, shop->metal("galvanised")}};
     for (const auto& [height, look] : pipes) {
       const double at = std::min(height, rock_.wall() + 0.3 * (height - 1.2));
-      b.show(
-          height < 1.7 ? "water_pipe" : "air_pipe", look,
-          rock_.path().cable(0.5, end, {float(wall), float(at)}, height < 1.7 ? 0.055 : 0.08, 12));
+      b.show(height < 1.7 ? "water_pipe" : "air_pipe", look,
+             rock_.path().cable(0.5, end, {wall, at}, height < 1.7 ? 0.055 : 0.08, 12));
       for (double s = 2; s < end; s += 3)
         if (!rock_.is_niche(s, -duct_side_)) {
           const CurvedPath::Station k = rock_.path().at(s);

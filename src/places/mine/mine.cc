@@ -1,7 +1,5 @@
 // A drift of a mine: rock and muck, lamps, and goods along one wall and in niches.
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 
@@ -47,7 +45,7 @@ class MineBuilder {
     add_lamps(&shop);
     add_clutter();
     add_niche_goods();
-    add_regions();
+    place_.regions = path_.regions("drift", o_.width, o_.height);
     place_.ev100 = 4;
     return std::move(place_);
   }
@@ -79,13 +77,7 @@ class MineBuilder {
       b.show("tracks", track,
              path_.strip(0, o_.length, {float(side * gauge + 0.2), 0.002f},
                          {float(side * gauge - 0.2), 0.002f}));
-    // All is level: one box from end to end.
-    Vec3f low{1e9f, 1e9f, -0.5f}, high{-1e9f, -1e9f, 0};
-    for (const CurvedPath::Station& k : path_.stations()) {
-      low = {std::min(low.x, float(k.x)), std::min(low.y, float(k.y)), low.z};
-      high = {std::max(high.x, float(k.x)), std::max(high.y, float(k.y)), high.z};
-    }
-    b.collide_box({low.x - 10, low.y - 10, low.z}, {high.x + 10, high.y + 10, 0});
+    path_.collide_ground(&b, 10);
     put("floor", std::move(floor));
 
     Prop water;
@@ -181,19 +173,6 @@ class MineBuilder {
       place_.put(
           thing, "",
           path_.pose(niche.s, niche.side * (clear - reach - 0.05), 0, dice_.uniform(-0.4, 0.4)));
-    }
-  }
-
-  void add_regions() {
-    const int count = std::max(1, static_cast<int>(std::lround(o_.length / 10)));
-    for (int i = 0; i < count; ++i) {
-      const CurvedPath::Station a = path_.at(o_.length * i / count),
-                                b = path_.at(o_.length * (i + 1) / count);
-      const double grow = o_.width * 0.25;
-      place_.regions.push_back({fmt::format("drift_{}", i + 1),
-                                "drift",
-                                {std::min(a.x, b.x), std::min(a.y, b.y) - grow, 0},
-                                {std::max(a.x, b.x), std::max(a.y, b.y) + grow, o_.height}});
     }
   }
 

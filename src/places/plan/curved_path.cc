@@ -1,5 +1,7 @@
 #include "places/plan/curved_path.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -10,7 +12,7 @@ constexpr double kBetween = 1;  // between stations [m]
 
 }  // namespace
 
-CurvedPath::CurvedPath(const Shape& shape, Dice* dice) {
+CurvedPath::CurvedPath(const Shape& shape, Dice* dice) : length_(shape.length) {
   const double bend = dice->uniform(0.5, 1) / shape.curve * (dice->chance(0.5) ? 1 : -1);
   const double wave = dice->uniform(0.7, 1.4) * 2 * M_PI / std::max(shape.length, 120.0);
   const double origin = shape.length / 4;
@@ -54,8 +56,9 @@ Vec3f CurvedPath::point(const Station& k, double left, double z) {
 
 Pose CurvedPath::pose(double s, double left, double z, double turned) const {
   const Station k = at(s);
-  const Vec3f p = point(k, left, z);
-  return {{p.x, p.y, p.z}, turn({0, 0, 1}, k.heading + turned)};
+  // The height is that of points of meshes, so that things stand on them exactly.
+  return {{k.x - std::sin(k.heading) * left, k.y + std::cos(k.heading) * left, float(z)},
+          turn({0, 0, 1}, k.heading + turned)};
 }
 
 Solid CurvedPath::strip(double from, double to, Vec2f a, Vec2f b) const {
@@ -67,10 +70,36 @@ Solid CurvedPath::strip(double from, double to, Vec2f a, Vec2f b) const {
   return sheet(points, 2);
 }
 
-Solid CurvedPath::cable(double from, double to, Vec2f line, double radius, int segments) const {
+Solid CurvedPath::cable(double from, double to, std::pair<double, double> line, double radius,
+                        int segments) const {
+  const auto& [left, z] = line;
   Path path;
-  for (const Station& k : within(from, to)) path.push_back(point(k, line.x, line.y));
+  for (const Station& k : within(from, to)) path.push_back(point(k, left, z));
   return tube(path, float(radius), segments);
+}
+
+void CurvedPath::collide_ground(PropPart* part, float margin) const {
+  Vec3f low{1e9f, 1e9f, -0.5f}, high{-1e9f, -1e9f, 0};
+  for (const Station& k : stations_) {
+    low = {std::min(low.x, float(k.x)), std::min(low.y, float(k.y)), low.z};
+    high = {std::max(high.x, float(k.x)), std::max(high.y, float(k.y)), high.z};
+  }
+  part->collide_box({low.x - margin, low.y - margin, low.z}, {high.x + margin, high.y + margin, 0});
+}
+
+std::vector<Region> CurvedPath::regions(const std::string& label, double width,
+                                        double height) const {
+  std::vector<Region> list;
+  const int count = std::max(1, static_cast<int>(std::lround(length_ / 10)));
+  for (int i = 0; i < count; ++i) {
+    const Station a = at(length_ * i / count), b = at(length_ * (i + 1) / count);
+    const double grow = width * 0.25;
+    list.push_back({fmt::format("{}_{}", label, i + 1),
+                    label,
+                    {std::min(a.x, b.x), std::min(a.y, b.y) - grow, 0},
+                    {std::max(a.x, b.x), std::max(a.y, b.y) + grow, height}});
+  }
+  return list;
 }
 
 void collide_strip(PropPart* part, const CurvedPath::Station& a, const CurvedPath::Station& b,

@@ -1,9 +1,12 @@
 #pragma once
 // The level, gently curved axis of a tunnel, and surfaces and colliders along it.
 
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "geometry/solid.h"
+#include "gloam/scene/environment.h"
 #include "gloam/types.h"
 #include "places/dice.h"
 #include "places/prop.h"
@@ -41,9 +44,16 @@ class CurvedPath {
   /// left of the way from a to b, seen along the path.
   Solid strip(double from, double to, Vec2f a, Vec2f b) const;
   /// A round tube or cable along a line of the cross section.
-  Solid cable(double from, double to, Vec2f line, double radius, int segments = 10) const;
+  Solid cable(double from, double to, std::pair<double, double> line, double radius,
+              int segments = 10) const;
+
+  /// A box below the whole path, with its top at z = 0 and `margin` around [m].
+  void collide_ground(PropPart* part, float margin) const;
+  /// Floors LABEL_1 … of about 10 m of the path each, half as wide as `width` [m].
+  std::vector<Region> regions(const std::string& label, double width, double height) const;
 
  private:
+  double length_;
   std::vector<Station> stations_;
 };
 
