@@ -10,6 +10,7 @@ from PIL import Image
 
 WIDTH, HEIGHT, FOCAL, BASELINE = 320, 240, 200.0, 0.06
 NEAR, FAR = 2.0, 4.0  # of the walls [m]
+SQUARE = 120  # of the near wall and of its holes [px]: large, because features on their edges take the depth of the wrong wall
 STEP = 0.04  # per frame to the right [m]: 4 px of the near wall, 2 px of the far one
 RATE = 20.0
 
@@ -35,7 +36,7 @@ def slide(case: Path, frames: int = 40, dark_from: int | None = None) -> None:
     """Writes CASE/sequence and CASE/truth.tum. dark_from: frame from which the images are black."""
     random = np.random.default_rng(5)
     width = WIDTH + round(FOCAL * STEP * frames / NEAR) + 20
-    holes = np.kron(random.random((HEIGHT // 60, width // 60 + 1)) < 0.5, np.ones((60, 60), bool))[:HEIGHT, :width]
+    holes = np.kron(random.random((HEIGHT // SQUARE, width // SQUARE + 1)) < 0.5, np.ones((SQUARE, SQUARE), bool))[:HEIGHT, :width]
     walls = texture(random, width), texture(random, width), holes.astype(bool)
     sequence = case / "sequence"
     for kind in ("rgb", "right", "depth"):

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import argparse
 import os
+import time
 from pathlib import Path
 
 import cv2
@@ -66,16 +67,19 @@ def _matrix(name: str, values: Array) -> list[str]:
 
 
 def track(slam: pyorbslam3.Slam, sequence: Sequence, sensors: str, output: Output) -> None:
-    """Feeds all frames."""
+    """Feeds all frames, not faster than they were recorded, as the authors' programs do: the map grows in other threads meanwhile,
+    and would fall behind the camera."""
     kind = sensors.removesuffix("_imu")
     imu = sequence.imu() if sensors.endswith("_imu") else None
-    before = -np.inf
+    before, start = -np.inf, None
     has_tracked = False
     for stamp, files in sequence.images(KINDS[kind]):
         flag = cv2.IMREAD_UNCHANGED if kind == "rgbd" else cv2.IMREAD_COLOR
         images = [cv2.imread(str(files[0]), cv2.IMREAD_COLOR), *(cv2.imread(str(file), flag) for file in files[1:])]
         more = {} if imu is None else {"imu": imu[(imu[:, 0] > before) & (imu[:, 0] <= stamp)]}
         before = stamp
+        start = time.monotonic() - stamp if start is None else start
+        time.sleep(max(0.0, start + stamp - time.monotonic()))
         output.begin()
         result = {"mono": slam.track_monocular, "stereo": slam.track_stereo, "rgbd": slam.track_rgbd}[kind](*images, stamp, **more)
         is_tracked = bool(result.pose_valid) and result.state in (pyorbslam3.TrackingState.OK, pyorbslam3.TrackingState.OK_KLT)
