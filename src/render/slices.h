@@ -3,6 +3,7 @@
 // have the renderer first.
 
 #include <atomic>
+#include <chrono>
 #include <cstdint>
 #include <functional>
 #include <utility>
@@ -22,7 +23,11 @@ class RenderSlices {
 
   /// To be called between two stages: lets others go first.
   void pause() {
-    if (turns_ != nullptr && turns_->is_wanted() && turns_->pass()) again_();
+    if (turns_ == nullptr || !turns_->is_wanted() || !turns_->pass()) return;
+    const auto start = std::chrono::steady_clock::now();
+    again_();
+    turns_->count_update(
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
   }
 
   /// Calls f(i) for every i in [0, n) on all threads, as parallel_for does. Where others go first,

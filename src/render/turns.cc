@@ -7,10 +7,7 @@
 namespace gloam {
 namespace {
 
-// A sensor that comes back after a pause is ahead of the others by this much, and no more however
-// long it paused; a holder keeps its turn for as long against sensors that have used as much as it
-// has. Changing turns costs an update of the scene, a few milliseconds at most.
-constexpr double kSlice = 0.02;  // [s]
+constexpr double kSlicePerUpdate = 4;
 
 }  // namespace
 
@@ -59,7 +56,7 @@ void RenderTurns::wait_for_turn(std::unique_lock<std::mutex>& lock, RenderUse& u
 
 void RenderTurns::take(RenderUse& use) {
   std::unique_lock lock(mutex_);
-  use.used = std::max(use.used, floor_ - kSlice);
+  use.used = std::max(use.used, floor_ - slice_);
   if (holder_ == nullptr) return grant(use);
   wait_for_turn(lock, use);
 }
@@ -75,7 +72,7 @@ bool RenderTurns::is_wanted() const {
   const double least = least_waiting_.load(std::memory_order_relaxed);
   if (least == kNobody) return false;
   const double turn = std::chrono::duration<double>(Clock::now() - since_).count();
-  return holder_->used + turn > least + kSlice;
+  return holder_->used + turn > least + slice_.load(std::memory_order_relaxed);
 }
 
 bool RenderTurns::pass() {
@@ -88,6 +85,10 @@ bool RenderTurns::pass() {
   holder_ = nullptr;
   wait_for_turn(lock, mine);
   return true;
+}
+
+void RenderTurns::count_update(double seconds) {
+  slice_.store(std::max(kShortestSlice, kSlicePerUpdate * seconds), std::memory_order_relaxed);
 }
 
 }  // namespace gloam

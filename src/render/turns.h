@@ -31,6 +31,9 @@ class RenderTurns {
   /// Lets those go first that should, then goes on. True if another sensor had a turn in between:
   /// the renderer then has to be updated again.
   bool pass();
+  /// Reports the time [s] of that update by the holder of the turn. Turns become so long that
+  /// updates take a fifth of the time at most.
+  void count_update(double seconds);
 
   // A turn without an account, for std::lock_guard: of short work that is no sensor's.
   void lock() { take(others_); }
@@ -51,13 +54,18 @@ class RenderTurns {
   void find_least();
 
   static constexpr double kNobody = std::numeric_limits<double>::infinity();
-  std::mutex mutex_;               // guards all but least_waiting_
+  // A sensor that comes back after a pause is ahead of the others by a slice, and no more however
+  // long it paused; a holder keeps its turn for as long against sensors that have used as much as
+  // it has.
+  static constexpr double kShortestSlice = 0.02;  // [s]
+  std::mutex mutex_;               // guards all but the atomic numbers
   std::vector<Waiting*> waiting_;  // in the order in which they came
   RenderUse* holder_ = nullptr;    // null: the renderer is free
   Clock::time_point since_;        // of the holder's turn, up to which its time is settled
   double floor_ = 0;               // the most that a holder had used when its turn began [s]
   RenderUse others_;
   std::atomic<double> least_waiting_{kNobody};  // least `used` among those that wait [s]
+  std::atomic<double> slice_{kShortestSlice};   // [s]
 };
 
 /// A turn of a sensor, given back at the end of its scope.

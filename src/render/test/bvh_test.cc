@@ -61,12 +61,19 @@ struct Zoo {
   }
 };
 
+/// Of the last update: motion within the shutter, or an instant after another one, to which trees
+/// of changed forms are fitted, and which a second sensor shares.
+enum class Update { kShutter, kInstant };
+
 class BothTrees {
  public:
-  explicit BothTrees(int rings) : zoo_(rings), traced_(trace_scene(zoo_.builder, true)) {
+  explicit BothTrees(int rings, Update last = Update::kShutter)
+      : zoo_(rings), traced_(trace_scene(zoo_.builder, true)) {
     const PoseFrame* const keys[] = {&zoo_.builder.frame, &zoo_.close, &zoo_.builder.frame};
     traced_.update({keys, 1}, zoo_.builder.frame);
-    traced_.update(keys, zoo_.builder.frame);
+    if (last == Update::kShutter) traced_.update(keys, zoo_.builder.frame);
+    for (int sensor = 0; sensor < 2 && last == Update::kInstant; ++sensor)
+      traced_.update({keys + 1, 1}, zoo_.close);
     theirs = traced_.tracer();
     ours = traced_.own().tracer(traced_.scene());
     view = traced_.scene().view_from({});
@@ -172,8 +179,11 @@ TEST(Bvh, ARayHitsTheSameByStepsAndByRuns) {
   EXPECT_GT(hits, 10'000) << "the rest hits what stands outside the tree";
 }
 
-TEST(Bvh, AMillionRaysHitWhatTheyHitInEmbree) {
-  const BothTrees both(120);  // 57,600 triangles a ball
+class BvhAfter : public testing::TestWithParam<Update> {};
+INSTANTIATE_TEST_SUITE_P(Updates, BvhAfter, testing::Values(Update::kShutter, Update::kInstant));
+
+TEST_P(BvhAfter, AMillionRaysHitWhatTheyHitInEmbree) {
+  const BothTrees both(120, GetParam());  // 57,600 triangles a ball
   if (both.theirs.own) GTEST_SKIP() << "this build has no Embree to compare with";
   constexpr int kRays = 1'000'000;
   struct Count {

@@ -101,6 +101,27 @@ TEST(RenderSlices, EachTaskIsDoneOnceAndTheSceneIsReadAgainAfterATurnOfAnother) 
   light.wait();
 }
 
+TEST(RenderSlices, TurnsAreLongWhereTheUpdateOfTheSceneIsSlow) {
+  RenderTurns turns;
+  std::vector<int> order;
+  RenderUse mine{.used = 10}, pause{.used = 20};
+  turns.take(mine);
+  std::this_thread::sleep_for(30ms);
+  Sensor first(turns, &order, 1, 0);
+  wait_until_wanted(turns);
+  RenderSlices slices(&turns, [] { std::this_thread::sleep_for(50ms); });
+  slices.pause();
+  first.wait();
+  EXPECT_EQ(order, (std::vector{1}));
+  turns.give();
+  turns.take(pause);  // 10 s ahead of `mine`, which gets no more than a slice of that
+  turns.give();
+  turns.take(mine);
+  EXPECT_LT(mine.used, 20 - 0.19) << "four times the update";
+  EXPECT_GT(mine.used, 20 - 1.9);
+  turns.give();
+}
+
 TEST(RenderSlices, WithoutOthersTheyAreALoop) {
   RenderSlices slices(nullptr, {});
   std::atomic<int> sum{0};

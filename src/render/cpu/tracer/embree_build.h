@@ -30,6 +30,13 @@ struct ShapeGeometry {
   Affine3f X_SG;
 };
 
+/// An instance or a deformable, and what Embree has of it.
+struct MovingGeometry {
+  RtcOwner<RTCGeometry> geometry;
+  std::vector<Affine3f> poses = {};  ///< instances: at all keys; empty = none yet
+  unsigned key_count = 0;            ///< deformables: of its buffers; 0 = none yet
+};
+
 class EmbreeBuild final : public EmbreeScene {
  public:
   explicit EmbreeBuild(RtcOwner<RTCDevice> device) : device_(std::move(device)) {}
@@ -60,7 +67,7 @@ class EmbreeBuild final : public EmbreeScene {
   std::map<ShapeKey, RtcOwner<RTCScene>>
       shapes_;                 ///< one BVH per shape that moves, or that many share
   RtcOwner<RTCScene> moving_;  ///< instances, deformables; null = none
-  std::vector<RtcOwner<RTCGeometry>> moving_geometries_;
+  std::vector<MovingGeometry> moving_geometries_;
   /// Embree id -> instance: those of moving_, then the scanned solids, then
   /// those of fixed_.
   std::vector<uint32_t> rows_;

@@ -8,6 +8,7 @@
 #include "base/log.h"
 #include "base/parallel.h"
 #include "render/renderer.h"
+#include "render/scene/pose.h"
 
 namespace gloam {
 namespace {
@@ -89,6 +90,47 @@ void set_vertices(RTCGeometry geometry, unsigned key, const Vec3f* vertices, siz
                                       sizeof(Vec3f), count);
   if (out != nullptr) std::memcpy(out, vertices, count * sizeof(Vec3f));
 }
+/// Whether Embree has these vertices at a key.
+bool has_vertices(RTCGeometry geometry, unsigned key, const Vec3f* vertices, size_t count) {
+  const void* const known = rtcGetGeometryBufferData(geometry, RTC_BUFFER_TYPE_VERTEX, key);
+  return known != nullptr && std::memcmp(known, vertices, count * sizeof(Vec3f)) == 0;
+}
+
+/// Gives a deformable its vertices. False if it has them already.
+bool deform(const MeshView& mesh, MovingGeometry* moving) {
+  const RTCGeometry geometry = moving->geometry.get();
+  const size_t n = mesh.positions.size;
+  const unsigned count = std::max(mesh.key_count, 1u);
+  const auto vertices_at = [&](unsigned k) {
+    return k == 0 ? mesh.positions.data : mesh.position_keys.data + k * n;
+  };
+  bool is_known = count == moving->key_count;
+  for (unsigned k = 0; k < count && is_known; ++k)
+    is_known = has_vertices(geometry, k, vertices_at(k), n);
+  if (is_known) return false;
+  moving->key_count = count;
+  rtcSetGeometryTimeStepCount(geometry, count);
+  for (unsigned k = 0; k < count; ++k) set_vertices(geometry, k, vertices_at(k), n);
+  return true;
+}
+
+/// Gives an instance its poses. False if it has them already.
+bool move(const InstanceView& in, MovingGeometry* moving) {
+  std::vector<Affine3f>& poses = moving->poses;
+  const unsigned count = std::max(in.keys.size, 1u);
+  const auto pose_at = [&](unsigned k) { return k == 0 ? in.X_WG : in.keys[k]; };
+  bool is_known = poses.size() == count;
+  for (unsigned k = 0; k < count && is_known; ++k) is_known = is_same(poses[k], pose_at(k));
+  if (is_known) return false;
+  poses.resize(count);
+  rtcSetGeometryTimeStepCount(moving->geometry.get(), count);
+  for (unsigned k = 0; k < count; ++k) {
+    poses[k] = pose_at(k);
+    set_transform(moving->geometry.get(), k, poses[k]);
+  }
+  return true;
+}
+
 void set_indices(RTCGeometry geometry, const uint32_t* indices, size_t triangles) {
   void* out = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
                                       3 * sizeof(uint32_t), triangles);
@@ -240,7 +282,7 @@ void EmbreeBuild::build_shapes(const RenderScene& scene) {
     RtcOwner<RTCGeometry> instance = instance_of(shape_of(scene, in, &to_commit));
     rtcAttachGeometryByID(moving_.get(), instance.get(), static_cast<unsigned>(rows_.size()));
     rows_.push_back(static_cast<uint32_t>(i));
-    moving_geometries_.push_back(std::move(instance));
+    moving_geometries_.push_back({std::move(instance)});
   }
   commit(to_commit);
 }
@@ -277,10 +319,12 @@ void EmbreeBuild::build_moving(const RenderScene& scene) {
   for (size_t i = 0; i < instances.size(); ++i) {
     if (instances[i].shape != ShapeType::kDeformable || !scene.is_drawn(i)) continue;
     RtcOwner<RTCGeometry> geometry = mesh_geometry(scene.meshes()[instances[i].mesh]);
+    // Embree refits in scenes of low quality only, in a twentieth of the time of a build.
+    rtcSetSceneBuildQuality(moving_.get(), RTC_BUILD_QUALITY_LOW);
     rtcSetGeometryBuildQuality(geometry.get(), RTC_BUILD_QUALITY_REFIT);
     rtcAttachGeometryByID(moving_.get(), geometry.get(), static_cast<unsigned>(rows_.size()));
     rows_.push_back(static_cast<uint32_t>(i));
-    moving_geometries_.push_back(std::move(geometry));
+    moving_geometries_.push_back({std::move(geometry)});
   }
   if (rows_.empty()) moving_.reset();
 }
@@ -288,24 +332,17 @@ void EmbreeBuild::build_moving(const RenderScene& scene) {
 Status EmbreeBuild::update(const RenderScene& scene) {
   if (drawn_version_ != scene.drawn_version()) build(scene);
   for (const uint32_t mesh : scene.rebuilt_meshes()) rebuild_mesh(scene, mesh);
+  // Sensors that share an instant update the scene to it one after the other.
+  bool has_changed = !scene.rebuilt_meshes().empty();
   for (size_t g = 0; g < moving_geometries_.size(); ++g) {
-    const RTCGeometry geometry = moving_geometries_[g].get();
+    MovingGeometry& moving = moving_geometries_[g];
     const InstanceView& in = scene.instances()[rows_[g]];
-    if (in.shape == ShapeType::kDeformable) {
-      const MeshView& mesh = scene.meshes()[in.mesh];
-      const size_t n = mesh.positions.size;
-      rtcSetGeometryTimeStepCount(geometry, std::max(mesh.key_count, 1u));
-      set_vertices(geometry, 0, mesh.positions.data, n);
-      for (unsigned k = 1; k < mesh.key_count; ++k)
-        set_vertices(geometry, k, mesh.position_keys.data + k * n, n);
-    } else {
-      rtcSetGeometryTimeStepCount(geometry, std::max(in.keys.size, 1u));
-      set_transform(geometry, 0, in.X_WG);
-      for (unsigned k = 1; k < in.keys.size; ++k) set_transform(geometry, k, in.keys[k]);
-    }
-    rtcCommitGeometry(geometry);
+    const bool moves = in.shape == ShapeType::kDeformable ? deform(scene.meshes()[in.mesh], &moving)
+                                                          : move(in, &moving);
+    if (moves) rtcCommitGeometry(moving.geometry.get());
+    has_changed |= moves;
   }
-  if (moving_ != nullptr) rtcCommitScene(moving_.get());
+  if (moving_ != nullptr && has_changed) rtcCommitScene(moving_.get());
   if (const RTCError error = rtcGetDeviceError(device_.get()); error != RTC_ERROR_NONE) {
     return Error{ErrorKind::kUnsupported,
                  error == RTC_ERROR_OUT_OF_MEMORY
