@@ -58,11 +58,11 @@ class RenderTurns {
   // long it paused; a holder keeps its turn for as long against sensors that have used as much as
   // it has.
   static constexpr double kShortestSlice = 0.02;  // [s]
-  std::mutex mutex_;               // guards all but the atomic numbers
-  std::vector<Waiting*> waiting_;  // in the order in which they came
-  RenderUse* holder_ = nullptr;    // null: the renderer is free
-  Clock::time_point since_;        // of the holder's turn, up to which its time is settled
-  double floor_ = 0;               // the most that a holder had used when its turn began [s]
+  std::mutex mutex_;                              // guards all but the atomic numbers
+  std::vector<Waiting*> waiting_;                 // in the order in which they came
+  RenderUse* holder_ = nullptr;                   // null: the renderer is free
+  Clock::time_point since_;  // of the holder's turn, up to which its time is settled
+  double floor_ = 0;         // the most that a holder had used when its turn began [s]
   RenderUse others_;
   std::atomic<double> least_waiting_{kNobody};  // least `used` among those that wait [s]
   std::atomic<double> slice_{kShortestSlice};   // [s]
