@@ -115,6 +115,15 @@ def test_orb_slam3_measures_an_exact_motion(case: Path, vocabulary: Path, tmp_pa
     check_features(tmp_path / "out")
 
 
+def test_orb_slam3_keeps_its_poses_when_its_map_is_reset(vocabulary: Path, tmp_path: Path) -> None:
+    slide(tmp_path / "case", 40, dark_from=6)
+    found = outcome("orb_slam3_stereo", tmp_path / "case", tmp_path / "out", vocabulary=str(vocabulary))
+    assert found.state == "ok", found.message
+    states = [frame.state for frame in read_frames(tmp_path / "out" / "frames.csv")]
+    assert states == [TRACKED] * 6 + [LOST] * 34
+    assert found.measures.completeness == pytest.approx(5 / 39, abs=0.03) and (found.measures.ate_se3 or 1) < 0.01
+
+
 def test_orb_slam3_names_its_problem(case: Path, vocabulary: Path, tmp_path: Path) -> None:
     found = outcome("orb_slam3_rgbd", case, tmp_path / "a", vocabulary=str(tmp_path / "none.txt"))
     assert found.state == "crashed" and "Vocabulary file not found" in found.message

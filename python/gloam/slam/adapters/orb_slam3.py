@@ -118,6 +118,15 @@ def final_poses(file: Path, tracked: dict[float, Array], camera_in_body: Array) 
     return answer or tracked
 
 
+def save_final(slam: pyorbslam3.Slam, file: Path) -> None:
+    """Saves the optimised poses from a process of its own, because ORB-SLAM3 crashes if its map has just been reset."""
+    child = os.fork()
+    if child == 0:
+        slam.save_trajectory_euroc(str(file))
+        os._exit(0)
+    os.waitpid(child, 0)
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("sequence")
@@ -133,7 +142,7 @@ def main() -> None:
         track(slam, sequence, given.sensors, output)
         slam.shutdown()
         if output.poses:
-            slam.save_trajectory_euroc(str(out / "final.txt"))
+            save_final(slam, out / "final.txt")
             has_imu = given.sensors.endswith("_imu") and sequence.imu_model is not None
             camera_in_body = np.linalg.inv(np.array(sequence.imu_model.in_camera)) if has_imu else np.eye(4)
             output.poses = final_poses(out / "final.txt", output.poses, camera_in_body)
