@@ -9,6 +9,7 @@ namespace gloam {
 namespace {
 
 constexpr double kMeterConstant = 12.5;  // K of ISO 2720 [cd s/(m² lx)]
+constexpr int kMeterZone = 4;            // side [px]
 
 }  // namespace
 
@@ -47,7 +48,9 @@ double saturation_of(const AutoExposureOptions& options) {
 }
 
 double metered_luminance(const float* radiance, const MeterImage& image) {
-  std::vector<double> light, weight;
+  const int columns = (image.width + kMeterZone - 1) / kMeterZone;
+  const int rows = (image.height + kMeterZone - 1) / kMeterZone;
+  std::vector<double> light(static_cast<size_t>(columns * rows)), weight(light.size());
   for (int y = 0; y < image.height; ++y) {
     for (int x = 0; x < image.width; ++x, radiance += 3) {
       const double dx = (x + 0.5 - 0.5 * image.width) / (0.25 * image.width),
@@ -56,14 +59,16 @@ double metered_luminance(const float* radiance, const MeterImage& image) {
                            0.7152 * static_cast<double>(radiance[1]) +
                            0.0722 * static_cast<double>(radiance[2]);
       if (!std::isfinite(value)) continue;
-      light.push_back(value);
-      weight.push_back(image.center_weighted ? std::exp(-0.5 * (dx * dx + dy * dy)) : 1);
+      const double w = image.center_weighted ? std::exp(-0.5 * (dx * dx + dy * dy)) : 1;
+      const auto zone = static_cast<size_t>(y / kMeterZone * columns + x / kMeterZone);
+      light[zone] += w * value;
+      weight[zone] += w;
     }
   }
   const auto mean_below = [&](double most) {
     double sum = 0, weights = 0;
     for (size_t i = 0; i < light.size(); ++i) {
-      sum += weight[i] * std::min(light[i], most);
+      sum += std::min(light[i], weight[i] * most);
       weights += weight[i];
     }
     return weights > 0 ? sum / weights : 0;

@@ -53,8 +53,9 @@ struct MeterImage {
 };
 
 /// Metered luminance [cd/m²] of radiance (height x width x 3), linear Rec. 709: the mean of an
-/// image that this luminance itself exposes. Pixels above its scale count as saturated, as in a
-/// camera that meters its own images, so a window in view does not darken the room.
+/// image that this luminance itself exposes. Zones of 4 x 4 pixels above its scale count as
+/// saturated, as in a camera that meters its own images, so a window in view does not darken the
+/// room. The pixels themselves are too noisy: few samples of smoke are bright, and most are dark.
 double metered_luminance(const float* radiance, const MeterImage& image);
 
 }  // namespace gloam

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <random>
 
 #include "base/parallel.h"
 #include "render/film/tone_map.h"
@@ -105,7 +106,8 @@ TEST(AutoExposure, MetersAWindowAsTheSaturatedPixelsOfItsOwnImage) {
   // A quarter of the image is a window, 100 or 10,000 times as bright as the room.
   for (const double window : {1e3, 1e5}) {
     std::vector<float> light(3 * 32 * 24, 10);
-    std::fill_n(light.begin(), light.size() / 4, static_cast<float>(window));
+    for (size_t i = 0; i < light.size(); ++i)
+      if (i / 3 % 32 < 8) light[i] = static_cast<float>(window);
     const AutoExposureOptions options{.compensation = 1.5};
     const double saturation = saturation_of(options);
     const double mean = metered_luminance(light.data(), {32, 24, false, saturation});
@@ -116,6 +118,22 @@ TEST(AutoExposure, MetersAWindowAsTheSaturatedPixelsOfItsOwnImage) {
     EXPECT_NEAR(1.2 * std::exp2(automatic.ev100()), saturation * mean, 1e-6 * mean)
         << "saturation is the top of the scale";
   }
+}
+
+TEST(AutoExposure, MetersSmokeOfWhichFewSamplesAreBright) {
+  // One pixel in twenty is bright, at random, as in smoke that light reaches on long paths.
+  std::mt19937 random(3);
+  std::vector<float> light(3 * 32 * 24, 0.01f);
+  int bright = 0;
+  for (size_t pixel = 0; pixel < light.size() / 3; ++pixel) {
+    if (random() % 20 != 0) continue;
+    std::fill_n(light.begin() + static_cast<std::ptrdiff_t>(3 * pixel), 3, 200.0f);
+    ++bright;
+  }
+  const double mean = 200.0 * bright / (32 * 24);
+  EXPECT_NEAR(
+      metered_luminance(light.data(), {32, 24, false, saturation_of({.compensation = 0.7})}), mean,
+      0.1 * mean);
 }
 
 TEST(Vignetting, IsTheFourthPowerOfTheCosineOfTheLenssRay) {
