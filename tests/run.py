@@ -37,10 +37,11 @@ class Tally:
     """Counts of what ran, and what broke in plain words."""
 
     def __init__(self):
-        self.passed, self.failed, self.skipped, self.broken = 0, 0, 0, []
+        self.passed, self.failed, self.skipped, self.broken, self.seconds = 0, 0, 0, [], {}
 
     def add(self, name, passed, failed, skipped, seconds, detail="", broken=()):
         """One line of the report; `broken` names the tests that failed, for the last lines, which survive where a long report is cut."""
+        self.seconds[name] = seconds
         self.passed += passed
         self.failed += failed
         self.skipped += skipped
@@ -258,6 +259,7 @@ def check_lint_of_changes(tally):
 
 
 LANDING = 30  # commits
+SLOWEST = 20  # parts that the last lines name
 
 
 def base_commit():
@@ -344,6 +346,8 @@ def main():
     total = time.time() - started
     if tally.broken:
         print("failed:\n" + "\n".join(f"  {name}" for name in tally.broken))
+    slowest = sorted(tally.seconds.items(), key=lambda part: -part[1])[:SLOWEST]
+    print("slowest (often two at a time): " + ", ".join(f"{Path(name).stem if '.py' in name else name} {t:.0f} s" for name, t in slowest))
     print(f"total {total / 60:.1f} min")
     print(f"{tally.passed} passed, {tally.failed} failed" + (f", {tally.skipped} skipped" if tally.skipped else ""))
     return 1 if tally.failed or not tally.passed else 0
