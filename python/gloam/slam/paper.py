@@ -37,8 +37,9 @@ TABLE = tuple(
     for method, values in zip(_METHODS, cells, strict=True)
 )
 
-# Frames tracked in a mine [%] (Experiment 3), from the recordings of Kubelka et al. 2024.
-TUNNEL = {"clear": (7.83, 59.6, 100.0), "smoky": (0.0, 38.5, 43.6)}
+# Frames tracked in a mine, as fractions: method, in clear air, in smoke (Experiment 3, after the recordings of Kubelka et al. 2024).
+TUNNEL = tuple(zip(_METHODS, (0.0783, 0.596, 1.0), (0.0, 0.385, 0.436), strict=True))
+TUNNEL_SCENES = ("tunnel", "mine")
 
 DIFFERENCES = (
     "The paper's coverage is described as estimated over true length, but its formula is the inverse. Its numbers fall with "

@@ -18,6 +18,7 @@ from gloam.navigation.benchmark.visibility import KOSCHMIEDER
 
 from . import paper
 from .charts import tracking_chart, trajectory_chart, visibility
+from .losses import find_losses
 from .results import Key, Row, case_of, load_rows
 from .summary import MEASURES, Cell, summarize
 
@@ -56,8 +57,10 @@ def page_of(out: Path, request: Row, cells: list[Cell]) -> str:
         "visibility": {(cell.scene, cell.level): _visibility(out, cell) for cell in cells},
         "trajectories": {scene: image(trajectory_chart(out, scene, shown[scene], methods)) for scene in scenes},
         "tracking": {scene: image(tracking_chart(out, scene, shown[scene], methods)) for scene in scenes},
+        "losses": [(cell, find_losses(out, cell.examples[0])) for cell in cells if cell.examples],
         "examples": [(cell, _examples(out, cell)) for cell in cells],
         "paper": paper,
+        "tunnels": [cell for cell in cells if cell.scene in paper.TUNNEL_SCENES],
         "comparison": beside_paper(cells, lambda cell: (cell.scene, cell.level), paper.paper_rows),
     }
     return render_page(Path(__file__).with_name("report.html"), values)
