@@ -118,7 +118,7 @@ TEST(RenderSlices, TurnsAreLongWhereTheUpdateOfTheSceneIsSlow) {
   turns.give();
   turns.take(mine);
   EXPECT_LT(mine.used, 20 - 0.19) << "four times the update";
-  EXPECT_GT(mine.used, 20 - 1.9);
+  EXPECT_GT(mine.used, 10 + 1) << "no more than that";
   turns.give();
 }
 
