@@ -11,7 +11,7 @@ namespace gloam {
 namespace {
 
 constexpr int kProbeWidth = 32;  // [px]
-constexpr int kProbeSamples = 4;
+constexpr int kProbeSamples = 8;
 constexpr size_t kMaxStoredValues = 256;
 
 CameraRequest probe_request(const CameraOptions& camera, std::optional<int> max_depth) {

@@ -9,7 +9,7 @@ namespace gloam {
 namespace {
 
 constexpr double kMeterConstant = 12.5;  // K of ISO 2720 [cd s/(m² lx)]
-constexpr int kMeterZone = 4;            // side [px]
+constexpr int kMeterZone = 2;            // side [px]
 
 }  // namespace
 

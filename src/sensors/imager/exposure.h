@@ -53,7 +53,7 @@ struct MeterImage {
 };
 
 /// Metered luminance [cd/m²] of radiance (height x width x 3), linear Rec. 709: the mean of an
-/// image that this luminance itself exposes. Zones of 4 x 4 pixels above its scale count as
+/// image that this luminance itself exposes. Zones of 2 x 2 pixels above its scale count as
 /// saturated, as in a camera that meters its own images, so a window in view does not darken the
 /// room. The pixels themselves are too noisy: few samples of smoke are bright, and most are dark.
 double metered_luminance(const float* radiance, const MeterImage& image);

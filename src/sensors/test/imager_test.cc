@@ -121,12 +121,12 @@ TEST(AutoExposure, MetersAWindowAsTheSaturatedPixelsOfItsOwnImage) {
 }
 
 TEST(AutoExposure, MetersSmokeOfWhichFewSamplesAreBright) {
-  // One pixel in twenty is bright, at random, as in smoke that light reaches on long paths.
+  // One pixel in eight is bright, at random, as in smoke that light reaches on long paths.
   std::mt19937 random(3);
   std::vector<float> light(3 * 32 * 24, 0.01f);
   int bright = 0;
   for (size_t pixel = 0; pixel < light.size() / 3; ++pixel) {
-    if (random() % 20 != 0) continue;
+    if (random() % 8 != 0) continue;
     std::fill_n(light.begin() + static_cast<std::ptrdiff_t>(3 * pixel), 3, 200.0f);
     ++bright;
   }
