@@ -124,6 +124,29 @@ def test_orb_slam3_keeps_its_poses_when_its_map_is_reset(vocabulary: Path, tmp_p
     assert found.measures.completeness == pytest.approx(5 / 39, abs=0.03) and (found.measures.ate_se3 or 1) < 0.01
 
 
+SAVE = """import sys, time
+from pathlib import Path
+sys.path.insert(0, sys.argv[1])
+import orb_slam3
+orb_slam3.SAVING = 1
+class Hangs:
+    def save_trajectory_euroc(self, file):
+        Path(file).write_text("a part")
+        time.sleep(60)
+class Saves:
+    def save_trajectory_euroc(self, file):
+        Path(file).write_text("all")
+for slam, left in ((Hangs(), False), (Saves(), True)):
+    orb_slam3.save_final(slam, Path(sys.argv[2]))
+    assert Path(sys.argv[2]).exists() == left
+"""
+
+
+def test_orb_slam3_may_hang_while_it_saves(environments: Path, tmp_path: Path) -> None:
+    python = environments / "slam-orb_slam3" / "bin" / "python"
+    subprocess.run([python, "-c", SAVE, ADAPTERS, tmp_path / "final.txt"], check=True, timeout=30)
+
+
 def test_orb_slam3_names_its_problem(case: Path, vocabulary: Path, tmp_path: Path) -> None:
     found = outcome("orb_slam3_rgbd", case, tmp_path / "a", vocabulary=str(tmp_path / "none.txt"))
     assert found.state == "crashed" and "Vocabulary file not found" in found.message

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import argparse
 import os
+import signal
 import time
 from pathlib import Path
 
@@ -22,6 +23,7 @@ SENSORS = {
     "mono_imu": "IMU_MONOCULAR", "stereo_imu": "IMU_STEREO", "rgbd_imu": "IMU_RGBD",
 }  # fmt: skip
 FEATURES = 1250
+SAVING = 20  # longest time that saving the trajectory may take [s]
 FARTHEST = 40.0  # of stereo and depth points that count as near: times the baseline (ThDepth)
 
 
@@ -119,12 +121,15 @@ def final_poses(file: Path, tracked: dict[float, Array], camera_in_body: Array) 
 
 
 def save_final(slam: pyorbslam3.Slam, file: Path) -> None:
-    """Saves the optimised poses from a process of its own, because ORB-SLAM3 crashes if its map has just been reset."""
+    """Saves the optimised poses from a process of its own, because ORB-SLAM3 crashes if its map has just been reset, and may hang
+    where one of its threads still works. Without success there is no file."""
     child = os.fork()
     if child == 0:
+        signal.alarm(SAVING)  # ends the process
         slam.save_trajectory_euroc(str(file))
         os._exit(0)
-    os.waitpid(child, 0)
+    if os.waitpid(child, 0)[1] != 0:
+        file.unlink(missing_ok=True)
 
 
 def main() -> None:
