@@ -22,6 +22,7 @@ from .estimate import Array
 from .tour import IMU_RATE, TOUR_SENSORS, Sensors
 
 TRUTH, TRUTH_LIDAR, VISIBILITY = "truth.tum", "truth_lidar.tum", "visibility.csv"
+PATH_SAMPLES = 64  # per pixel in the path tier; with fewer the denoiser leaves patterns that methods take for features
 _DEPTH_SCALE = 1000.0  # of Gloam's depth images per metre
 # Of a BMI088 [rad/s/√Hz, rad/s²/√Hz, m/s²/√Hz, m/s³/√Hz]; its data sheet gives no random walks, those are usual values.
 _IMU_NOISE = (2.44e-4, 2e-5, 1.72e-3, 2e-4)
@@ -58,6 +59,8 @@ def make_sequence(log: Path, condition: Condition, folder: Path, sensors: Sensor
         request["duration"] = sensors.begin + condition.duration
     recorded = gloam.replay(log)
     settings = {"render.tier": condition.tier, **({} if condition.overlay else _settings(condition.level, sensors))}
+    if condition.tier == "path":
+        settings["render.spp"] = PATH_SAMPLES
     if condition.has_lidar:
         settings[f"lidar.{sensors.lidar}.outputs"] = ["npy"]
     overlays = [condition.overlay] if condition.overlay else []
