@@ -56,7 +56,7 @@ Vec3f CurvedPath::point(const Station& k, double left, double z) {
 
 Pose CurvedPath::pose(double s, double left, double z, double turned) const {
   const Station k = at(s);
-  // The height is that of points of meshes, so that things stand on them exactly.
+  // Meshes have single precision: an object stands exactly on them if its height has it, too.
   return {{k.x - std::sin(k.heading) * left, k.y + std::cos(k.heading) * left, float(z)},
           turn({0, 0, 1}, k.heading + turned)};
 }

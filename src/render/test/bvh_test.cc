@@ -4,6 +4,7 @@
 
 #include "base/parallel.h"
 #include "render/test/probe.h"
+#include "world/shapes/visual_mesh.h"
 
 namespace gloam {
 namespace {
@@ -61,8 +62,8 @@ struct Zoo {
   }
 };
 
-/// Of the last update: motion within the shutter, or an instant after another one, to which trees
-/// of changed forms are fitted, and which a second sensor shares.
+/// Kind of the last update: motion within the shutter, or a later instant without motion. A later
+/// instant refits the trees of changed forms, and is requested twice, as by two sensors.
 enum class Update { kShutter, kInstant };
 
 class BothTrees {
@@ -177,6 +178,35 @@ TEST(Bvh, ARayHitsTheSameByStepsAndByRuns) {
     ASSERT_EQ(b.v, a.v) << i;
   }
   EXPECT_GT(hits, 10'000) << "the rest hits what stands outside the tree";
+}
+
+TEST(Bvh, ARayHitsAHillThatGrowsOutOfTheGround) {
+  SceneBuilder b;
+  const HeightFieldDescription field{
+      .mesh = 0, .rows = 5, .columns = 5, .size = {1, 1, 1}, .base = 0.1f};
+  b.frame.height_field.assign(25, 0);
+  b.add_mesh(height_field_mesh(field, b.frame.height_field));
+  b.description.height_fields.push_back(field);
+  b.add(ShapeType::kMesh, {}, {}, b.add_diffuse({0.5f, 0.5f, 0.5f}), 0, 0);
+  // Beside it, a ball that changes its form: Embree then builds in two levels.
+  DeformableDescription ball;
+  ball.rest = make_ball(8, 0.2f);
+  for (const Vec3f& p : ball.rest.positions)
+    for (const float v : {p.x, p.y, p.z + 5}) b.frame.vertices.push_back(v);
+  b.description.deformables.push_back(ball);
+  b.add(ShapeType::kDeformable, {}, {}, 0, 0, 0);
+  TracedScene traced = trace_scene(b, true);
+  const PoseFrame* const flat[] = {&b.frame};
+  traced.update(flat, b.frame);
+  PoseFrame hilly = b.frame;
+  std::ranges::fill(hilly.height_field, 0.8f);
+  ++hilly.height_field_serial;
+  const PoseFrame* const now[] = {&hilly};
+  traced.update(now, hilly);
+  RayHit hit;
+  ASSERT_TRUE(traced.tracer().trace(make_ray({-5, 0.1f, 0.6f}, {1, 0, 0}), false, &hit))
+      << "above all that was there before";
+  EXPECT_NEAR(hit.t, 4, 1e-4);
 }
 
 class BvhAfter : public testing::TestWithParam<Update> {};

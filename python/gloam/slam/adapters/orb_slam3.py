@@ -122,7 +122,7 @@ def final_poses(file: Path, tracked: dict[float, Array], camera_in_body: Array) 
 
 def save_final(slam: pyorbslam3.Slam, file: Path) -> None:
     """Saves the optimised poses from a process of its own, because ORB-SLAM3 crashes if its map has just been reset, and may hang
-    where one of its threads still works. Without success there is no file."""
+    while one of its threads is still running. If saving fails, no file is left."""
     child = os.fork()
     if child == 0:
         signal.alarm(SAVING)  # ends the process

@@ -90,6 +90,7 @@ void set_vertices(RTCGeometry geometry, unsigned key, const Vec3f* vertices, siz
                                       sizeof(Vec3f), count);
   if (out != nullptr) std::memcpy(out, vertices, count * sizeof(Vec3f));
 }
+
 /// Whether Embree has these vertices at a key.
 bool has_vertices(RTCGeometry geometry, unsigned key, const Vec3f* vertices, size_t count) {
   const void* const known = rtcGetGeometryBufferData(geometry, RTC_BUFFER_TYPE_VERTEX, key);
@@ -333,13 +334,15 @@ Status EmbreeBuild::update(const RenderScene& scene) {
   if (drawn_version_ != scene.drawn_version()) build(scene);
   for (const uint32_t mesh : scene.rebuilt_meshes()) rebuild_mesh(scene, mesh);
   // Sensors that share an instant update the scene to it one after the other.
-  bool has_changed = !scene.rebuilt_meshes().empty();
+  const bool has_new_shapes = !scene.rebuilt_meshes().empty();
+  bool has_changed = has_new_shapes;
   for (size_t g = 0; g < moving_geometries_.size(); ++g) {
     MovingGeometry& moving = moving_geometries_[g];
     const InstanceView& in = scene.instances()[rows_[g]];
     const bool moves = in.shape == ShapeType::kDeformable ? deform(scene.meshes()[in.mesh], &moving)
                                                           : move(in, &moving);
-    if (moves) rtcCommitGeometry(moving.geometry.get());
+    // An instance takes the bounds of a rebuilt mesh when it is committed.
+    if (moves || has_new_shapes) rtcCommitGeometry(moving.geometry.get());
     has_changed |= moves;
   }
   if (moving_ != nullptr && has_changed) rtcCommitScene(moving_.get());
