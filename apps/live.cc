@@ -76,10 +76,9 @@ void begin(const LiveRun& run, const LiveCommand& command) {
 
 void LiveCommand::add_to(CLI::App& app) {
   app.add_flag("--view", view, "Serve a live page on this machine instead of recording");
-  app.add_flag("--ros2", ros2,
-               "Run as a ROS 2 node on this machine, with topics and services (docs/ros2.md)");
-  app.add_flag("--zmq", zmq, "Serve states and operations over ZeroMQ (docs/zmq.md)");
-  app.add_flag("--foxglove", foxglove, "Run a Foxglove server (docs/foxglove.md)");
+  for (const BridgeKind& kind : bridge_kinds())
+    app.add_flag_callback(
+        "--" + kind.name, [this, name = kind.name] { bridges.insert(name); }, kind.help);
   app.add_flag("--paused", paused, "Live runs: start paused, until a client starts the simulation");
   app.add_option("--port", port,
                  "Port of the live page, or without --view of the Foxglove server; default: 8080 "
@@ -96,17 +95,16 @@ void LiveCommand::add_to(CLI::App& app) {
 
 Pace LiveCommand::pace_of(const Scene& scene, Pace usual) const {
   const std::string& name = pace.empty() ? scene.sim.pace : pace;
-  const Result<Pace> named = pace_named(name);
+  const Result<Pace> named = enum_named<Pace>(name);
   return named.ok() ? *named : usual;
 }
 
 BridgeOptions LiveCommand::options(const BridgeOptions& scene) const {
-  BridgeOptions bridges = scene;
-  if (ros2 && !bridges.ros2) bridges.ros2.emplace();
-  if (zmq && !bridges.zmq) bridges.zmq.emplace();
-  if (foxglove && !bridges.foxglove) bridges.foxglove.emplace();
-  if (!view && port && bridges.foxglove) bridges.foxglove->port = *port;
-  return bridges;
+  BridgeOptions options = scene;
+  for (const BridgeKind& kind : bridge_kinds())
+    if (bridges.contains(kind.name)) kind.request(&options);
+  if (!view && port && options.foxglove) options.foxglove->port = *port;
+  return options;
 }
 
 namespace {

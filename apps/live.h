@@ -3,6 +3,8 @@
 // commands that keep one.
 
 #include <optional>
+#include <set>
+#include <string>
 
 #include "command.h"
 #include "gloam/bridge.h"
@@ -14,9 +16,10 @@
 namespace gloam::cli {
 
 struct LiveCommand {
-  bool view = false, ros2 = false, zmq = false, foxglove = false;
-  bool paused = false;           ///< waits for a client to start it
-  std::optional<int> port = {};  ///< of the page; without one, of Foxglove
+  bool view = false;
+  std::set<std::string> bridges = {};  ///< names of bridge_kinds()
+  bool paused = false;                 ///< waits for a client to start it
+  std::optional<int> port = {};        ///< of the page; without one, of Foxglove
   double speed = 1;
   std::string pace = {};  ///< fast | realtime | sensors; "" = the scene's, else the usual one
   bool loop = false;      ///< of a log: it begins again at its end

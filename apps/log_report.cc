@@ -79,7 +79,7 @@ int report_topics(const World& world, const Globals& globals) {
                       {"depth", topic.qos.depth},
                       {"input", topic.is_input},
                       {"logged", topic.is_logged},
-                      {"source", topic.source}});
+                      {"source", to_string(topic.source)}});
     put_json(json);
     return 0;
   }
@@ -90,7 +90,8 @@ int report_topics(const World& world, const Globals& globals) {
                              : topic.rate.num == 0  ? "every step"
                                                     : fmt::format("{:g} Hz", topic.rate.value());
     say("  {:<6} {:<36} {:<34} {:<10} {}{}\n", topic.is_input ? "input" : "output", topic.name,
-        topic.type, rate, topic.source, topic.is_logged || topic.is_input ? "" : " (not in logs)");
+        topic.type, rate, to_string(topic.source),
+        topic.is_logged || topic.is_input ? "" : " (not in logs)");
   }
   return 0;
 }

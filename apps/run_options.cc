@@ -34,6 +34,16 @@ void SceneOptions::add_keyframe_to(CLI::App& command) {
 
 namespace {
 
+/// Adds an option whose values are the names of an enum.
+template <NamedEnum Enum>
+void add_named_option(CLI::App& command, const char* name, std::optional<Enum>* value,
+                      const char* description) {
+  command
+      .add_option_function<std::string>(
+          name, [value](const std::string& text) { *value = find_enum<Enum>(text); }, description)
+      ->check(CLI::IsMember(enum_names<Enum>()));
+}
+
 // A log that is resumed has its own World: options that would change it are rejected by name,
 // except the `kept` ones, which affect only the new run.
 void refuse_beside_log(const CLI::App& command, const std::vector<const CLI::Option*>& options) {
@@ -71,22 +81,17 @@ void RenderFlags::add_to(CLI::App& command) {
                   "Maximum length of light paths, in vertices; default: the scene's, or 5, or 24 "
                   "with media and in the interactive tier")
       ->check(CLI::Range(1, 64));
-  command
-      .add_option(
-          "--tier", tier,
-          "Rendering tier. path: unbiased light; interactive: real time, filtered; direct: one "
-          "ambient light")
-      ->check(CLI::IsMember({"path", "interactive", "direct"}));
-  command
-      .add_option("--device", device,
-                  "Rendering device; auto: an NVIDIA GPU if available, otherwise the CPU")
-      ->check(CLI::IsMember({"auto", "cpu", "cuda"}));
+  add_named_option(
+      command, "--tier", &tier,
+      "Rendering tier. path: unbiased light; interactive: real time, filtered; direct: one "
+      "ambient light");
+  add_named_option(command, "--device", &device,
+                   "Rendering device; auto: an NVIDIA GPU if available, otherwise the CPU");
   command.add_option("--ev", ev100, "Exposure value at ISO 100; default: set by the scene's light");
-  command
-      .add_option("--look", look,
-                  "Lighting of models without lights. studio: soft light and a floor; model: as in "
-                  "MuJoCo's viewer; default: the scene's, or studio if nothing emits light")
-      ->check(CLI::IsMember({"auto", "studio", "model"}));
+  add_named_option(
+      command, "--look", &look,
+      "Lighting of models without lights. studio: soft light and a floor; model: as in "
+      "MuJoCo's viewer; default: the scene's, or studio if nothing emits light");
   command
       .add_option("--groups", groups,
                   "Groups of geoms, tendons and sites to render, such as 0,1,2,3; default: 0,1,2")
@@ -105,9 +110,9 @@ void RenderFlags::apply_to(RenderOptions* render) const {
   }
   if (spp) render->spp = *spp;
   if (max_depth) render->max_depth = *max_depth;
-  if (!tier.empty()) render->tier = tier;
-  if (!device.empty()) render->device = device;
-  if (!look.empty()) render->look = look;
+  if (tier) render->tier = tier;
+  if (device) render->device = *device;
+  if (look) render->look = *look;
   if (ev100) render->ev100 = *ev100;
   if (!groups.empty()) render->groups = groups;
   if (sites) render->sites = true;
@@ -123,9 +128,9 @@ std::vector<std::pair<std::string, std::string>> RenderFlags::as_settings() cons
   if (error) add("error", *error);
   if (error || spp) add("spp", spp.value_or(kMostAdaptive));
   if (max_depth) add("max_depth", *max_depth);
-  if (!tier.empty()) add("tier", tier);
-  if (!device.empty()) add("device", device);
-  if (!look.empty()) add("look", look);
+  if (tier) add("tier", to_string(*tier));
+  if (device) add("device", to_string(*device));
+  if (look) add("look", to_string(*look));
   if (ev100) add("ev100", *ev100);
   if (!groups.empty()) add("groups", fmt::format("[{}]", fmt::join(groups, ", ")));
   if (sites) add("sites", true);

@@ -31,7 +31,9 @@ struct SceneOptions {
 struct RenderFlags {
   std::optional<double> ev100, error;
   std::optional<int> spp, max_depth;
-  std::string tier, device, look;
+  std::optional<RenderTier> tier;
+  std::optional<RenderDevice> device;
+  std::optional<RenderLook> look;
   std::vector<int> groups;
   bool no_denoise = false, sites = false;
   int threads = 0;

@@ -7,8 +7,8 @@
 
 #include "bench/command_line.h"
 #include "gloam/scene.h"
-#include "runtime/live_simulation.h"
-#include "runtime/sensing_quality.h"
+#include "runtime/live/live_simulation.h"
+#include "runtime/recording/sensing_quality.h"
 #include "sensors/lidar/lidar_sensor.h"
 #include "sensors/probe/visibility_probe.h"
 #include "sim/snapshots/pose_solver.h"

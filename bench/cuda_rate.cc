@@ -14,8 +14,8 @@
 #include <vector>
 
 #include "bench/command_line.h"
-#include "runtime/live_simulation.h"
-#include "runtime/run_to_step.h"
+#include "runtime/live/live_simulation.h"
+#include "runtime/live/run_to_step.h"
 
 using namespace gloam;
 

@@ -20,7 +20,7 @@
 #include "bench/median.h"
 #include "gloam/scene.h"
 #include "render/film/png.h"
-#include "runtime/live_simulation.h"
+#include "runtime/live/live_simulation.h"
 
 namespace gloam {
 namespace {
@@ -46,7 +46,7 @@ Status run(const Options& options) {
   CameraRequest request;
   request.camera = options.camera;
   request.width = options.width, request.height = options.height;
-  request.render.tier = options.tier;
+  GLOAM_TRY(request.render.tier, enum_named<RenderTier>(options.tier));
   request.render.spp = options.spp;
   request.render.denoise = false;
   if (options.truth) request.outputs = {"depth", "segmentation"};

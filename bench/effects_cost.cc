@@ -16,7 +16,7 @@
 #include "bench/command_line.h"
 #include "bench/median.h"
 #include "gloam/scene.h"
-#include "runtime/live_simulation.h"
+#include "runtime/live/live_simulation.h"
 #include "sim/loop/simulator.h"
 
 namespace gloam {
@@ -96,7 +96,7 @@ struct Filming {
     request.width = options.width, request.height = options.height;
     request.outputs = {"rgb"};
     request.render = scene.render;
-    request.render.tier = "interactive";
+    request.render.tier = RenderTier::kInteractive;
     GLOAM_TRY(out.sensor, CameraSensor::create(shared->description, request, 1));
     return out;
   }

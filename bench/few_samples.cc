@@ -19,8 +19,8 @@
 #include "gloam/scene.h"
 #include "render/film/png.h"
 #include "render/film/tone_map.h"
-#include "runtime/live_simulation.h"
-#include "runtime/run_to_step.h"
+#include "runtime/live/live_simulation.h"
+#include "runtime/live/run_to_step.h"
 #include "sensors/camera/camera_sensor.h"
 
 namespace gloam {
@@ -104,7 +104,7 @@ struct Studio {
     }
     return pictures;
   }
-  RenderOptions render(int spp, bool denoise, const char* tier = "path") const {
+  RenderOptions render(int spp, bool denoise, RenderTier tier = RenderTier::kPath) const {
     RenderOptions r = request.render;
     r.tier = tier;
     r.spp = spp;
@@ -187,7 +187,7 @@ Result<Found> measure(const Options& options, const Studio& studio, const std::s
   }
   std::vector<Color> interactive;
   for (int i = 0; i < options.seeds; ++i) {
-    GLOAM_TRY(const auto frames, studio.take(studio.render(1, true, "interactive"),
+    GLOAM_TRY(const auto frames, studio.take(studio.render(1, true, RenderTier::kInteractive),
                                              static_cast<uint64_t>(1 + i), kFrames));
     interactive.push_back(mean_of(frames.back()));
     if (i == 0) GLOAM_TRY_STATUS(save(options, studio, name + "_fast", frames.back()));

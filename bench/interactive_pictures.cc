@@ -154,11 +154,11 @@ Status run(const Options& options) {
   request.width = options.width, request.height = options.height;
   request.outputs = {"radiance"};
   request.render = file.render;
-  request.render.tier = "interactive";
+  request.render.tier = RenderTier::kInteractive;
   SharedRenderer& shared = *scene->shared;
   GLOAM_TRY(const auto interactive,
             CameraSensor::create(shared.description, request, static_cast<uint64_t>(options.seed)));
-  request.render.tier = "path";
+  request.render.tier = RenderTier::kPath;
   request.render.error.reset();
   request.render.max_depth = kReferenceDepth;
   request.render.denoise = true;

@@ -14,7 +14,7 @@
 
 #include "gloam/scene.h"
 #include "gloam/simulation.h"
-#include "runtime/live_simulation.h"
+#include "runtime/live/live_simulation.h"
 
 namespace gloam {
 namespace {

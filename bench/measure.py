@@ -518,6 +518,15 @@ def python(quick):
     yield at_most("µs to the arrays, pose and matrix of a frame of 640x480", cold, 50, f"right after it was rendered, caches cold; again {warm:.1f} µs; median of 30")
 
 
+def trajectories(quick):
+    """the step that receives a joint trajectory of any length"""
+    data = run_json(BIN / "bench_trajectory_cost", ROOT / "bench" / "trajectory_joints.toml", "--repeats", 10 if quick else 50)
+    costs = ", ".join(f"{cost:.0f} for {points}" for points, cost in data["receive_us"].items())
+    posts = ", ".join(f"{cost / 1000:.2f} for {points}" for points, cost in data["post_us"].items())
+    yield at_most("µs that a trajectory of 80,000 points adds to the step that receives it", data["receive_us"]["80000"], 200,
+                  f"{data['joints']} joints, 60 s; {costs} points; a step {data['step_us']:.0f} µs; ms of the caller that posts it: {posts}")
+
+
 def inverse_kinematics(quick):
     """one solution of differential inverse kinematics against Mink: the same tasks and limits"""
     folder = CACHE / "bench_ik"
@@ -552,4 +561,4 @@ def flight(quick):
 # With the seconds that each takes on two cores: the first estimate of the time left.
 ALL = {sim_step_rate: 15, sim_beside_cameras: 60, path_tier: 60, equal_error: 600, direct_tier: 90, direct_places: 60, view: 40, interactive_tier: 400, truth: 40, load_time: 120, import_time: 60,
        first_picture: 15, adaptive_sampling: 120, truth_at_few_samples: 900, lidar: 25, environments: 60, hfield: 25, policy: 3, gas: 20,
-       effects: 90, all_effects: 75, log_rate: 60, record_cost: 300, latency: 330, python: 60, inverse_kinematics: 30, flight: 20}
+       effects: 90, all_effects: 75, log_rate: 60, record_cost: 300, latency: 330, python: 60, inverse_kinematics: 30, trajectories: 15, flight: 20}

@@ -11,7 +11,7 @@
 
 #include "gloam/program.h"
 #include "gloam/scene.h"
-#include "runtime/live_simulation.h"
+#include "runtime/live/live_simulation.h"
 #include "sensors/camera/camera_sensor.h"
 
 namespace gloam {

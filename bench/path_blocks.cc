@@ -16,7 +16,7 @@
 #include "base/files.h"
 #include "bench/command_line.h"
 #include "gloam/scene.h"
-#include "runtime/live_simulation.h"
+#include "runtime/live/live_simulation.h"
 
 using namespace gloam;
 
@@ -80,7 +80,7 @@ Status render_blocks(const Arguments& a) {
   request.camera = a.camera;
   request.outputs = {"radiance"};
   request.render = scene.render;
-  request.render.tier = "path";
+  request.render.tier = RenderTier::kPath;
   request.render.spp = a.spp;
   request.render.denoise = false;
   std::vector<float> blocks, picture;

@@ -1,7 +1,7 @@
 // Time of an image of a realistic scene: a camera moves through it while physics runs.
 //
 //   realistic_rate SCENE --tier interactive|path|direct [--camera FROM..TO] [--size WxH]
-//                  [--device cpu|cuda] [--frames N] [--spp N] [--out FOLDER] [--json]
+//                  [--device auto|cpu|cuda] [--frames N] [--spp N] [--out FOLDER] [--json]
 //
 // Physics steps between the images, 20 of them per second of simulation time, and is timed apart:
 // its time is a mean over the intervals, because one of them may hold all work of a second. The
@@ -73,7 +73,7 @@ Result<std::unique_ptr<CameraSensor>> open(const Options& options, const MovingS
   request.camera = camera.name();
   request.width = options.width, request.height = options.height;
   request.render = render;
-  request.render.tier = options.tier;
+  GLOAM_TRY(request.render.tier, enum_named<RenderTier>(options.tier));
   request.render.spp = options.spp;
   request.render.error.reset();
   request.X_WC = camera.pose_at(0);
@@ -84,7 +84,9 @@ Result<Times> measure(const Options& options) {
   Times times;
   Watch watch;
   GLOAM_TRY(Scene file, load_scene(options.scene));
-  if (!options.device.empty()) file.render.device = options.device;
+  if (!options.device.empty()) {
+    GLOAM_TRY(file.render.device, enum_named<RenderDevice>(options.device));
+  }
   GLOAM_TRY(const auto scene, MovingScene::compile(file));
   times.load = watch.lap();
   GLOAM_TRY_STATUS(scene->open_renderer());
@@ -170,12 +172,11 @@ int main(int argc, char** argv) {
   line.value("--frames", &options.frames, 2);
   line.value("--spp", &options.spp);
   line.value("--out", &options.out);
-  const bool no_device =
-      !options.device.empty() && options.device != "cpu" && options.device != "cuda";
-  if (help || line.words().size() != 1 || options.tier.empty() || no_device) {
-    fmt::print(help ? stdout : stderr,
-               "usage: realistic_rate SCENE --tier interactive|path|direct [--camera FROM..TO] "
-               "[--size WxH] [--device cpu|cuda] [--frames N] [--spp N] [--out FOLDER] [--json]\n");
+  if (help || line.words().size() != 1 || options.tier.empty()) {
+    fmt::print(
+        help ? stdout : stderr,
+        "usage: realistic_rate SCENE --tier interactive|path|direct [--camera FROM..TO] "
+        "[--size WxH] [--device auto|cpu|cuda] [--frames N] [--spp N] [--out FOLDER] [--json]\n");
     return help ? 0 : 2;
   }
   options.scene = line.words()[0];

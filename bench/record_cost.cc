@@ -203,7 +203,7 @@ int main(int argc, char** argv) {
   const fs::path log = fs::path(line.words()[1]) / "record_cost.mcap";
   if (is_apart) use_processor(1);
   Scene scene = taken(load_scene(line.words()[0]));
-  scene.render.tier = "direct";
+  scene.render.tier = RenderTier::kDirect;
   scene.render.spp = 1;
   add_cameras(cameras, &scene);
   const World world = taken(World::compile(scene));

@@ -21,7 +21,7 @@
 
 #include "base/hash.h"
 #include "bench/step_model.h"
-#include "runtime/live_simulation.h"
+#include "runtime/live/live_simulation.h"
 #include "sim/state/state_layout.h"
 
 namespace gloam {

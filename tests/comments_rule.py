@@ -11,6 +11,7 @@ NAME = re.compile(r"(?<![\w./*<>{}$\-])((?:[\w\-]+/)*[\w\-]+\.(?:h|cc|cu|cuh|py|
 # Of other projects, and made by the build.
 OUTSIDE = {"jpeglib.h", "zmq.h", "mjspec.h", "mujoco/mjspec.h", "mjspecmacro.h", "mjxmacro.h", "rl/exporter_utils.py",
            "mjcf_elements.h", "gloam/mjcf_elements.h", "_core.pyi", "FILE.cu",
+           "ros/messages/PACKAGE.h", "ros/messages/gloam_msgs.h", "ros/messages/all_messages.h", "all_messages.h",
            # of the authors of GNM, ViNT and NoMaD
            "data_utils.py", "train/vint_train/data/data_utils.py", "vint_dataset.py", "deployment/src/utils.py", "navigate.py",
            "deployment/src/navigate.py", "pd_controller.py", "deployment/src/pd_controller.py", "create_topomap.py",

@@ -1,4 +1,4 @@
-# Answers to --help and --version, sourced by ./gloam. They build, install and write nothing: a built program prints them,
+# Answers to help, --help and --version, sourced by ./gloam. They build, install and write nothing: a built program prints them,
 # however old it is; otherwise they are read from the sources.
 
 asks_for() {  # asks_for "WORD…" ARG…: whether an argument before -- is one of the words
@@ -72,6 +72,7 @@ answer_help() {  # answer_help ARG…
     wheel) python_help "$root/tools/wheel.py" ;;
     mitsuba) python_help "$root/bench/mitsuba/judge.py" ;;
     gallery) python_help "$root/tools/gallery/gallery.py" ;;
+    docs) python_help "$root/tools/docs/docs.py" ;;
     doctor) python_help "$root/tools/doctor.py" ;;
     *)
       if [ -x "$program" ] && ! built_elsewhere "$root/build/$preset"; then

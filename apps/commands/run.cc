@@ -98,7 +98,7 @@ int run_world(const World& world, RunRequest request, const RunCommand& command,
 // Resumes from an instant of a log, in its World.
 int run_on(const RunCommand& command, const Globals& globals) {
   const RunOptions& o = command.options;
-  if (!o.settings.empty() || !o.outputs.empty() || o.seed || o.timestep || !o.tier.empty())
+  if (!o.settings.empty() || !o.outputs.empty() || o.seed || o.timestep || o.tier)
     return fail(
         {ErrorKind::kUsage,
          "`--at` cannot change the scene of a log",
@@ -127,8 +127,8 @@ int run(const RunCommand& command_line, const Globals& globals) {
     return fail(status.error());
   scene->record.mcap |= command.mcap;
   // Live images are in real time unless the command line asks for another tier.
-  if (command.is_live(scene->bridge) && command.options.tier.empty()) {
-    scene->render.tier = "interactive";
+  if (command.is_live(scene->bridge) && !command.options.tier) {
+    scene->render.tier = RenderTier::kInteractive;
     scene->render.error.reset();
   }
   auto world = compile(*scene, globals, command.options.keyframe);

@@ -216,7 +216,7 @@ struct Measured {
 };
 
 Result<Measured> compiled(Scene scene, std::vector<Subject> subjects) {
-  scene.render.tier = "direct";
+  scene.render.tier = RenderTier::kDirect;
   scene.render.spp = 1;
   scene.render.denoise = false;
   for (const Subject& subject : subjects) {

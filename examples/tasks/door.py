@@ -45,7 +45,7 @@ class Hand:
 
     def __init__(self, sim: gloam.Simulation) -> None:
         self.sim, self.robot = sim, sim.robots["dog"]
-        self.site = sim.world.info["sites"].index("dog/tcp")
+        self.site = sim.world.info.sites.index("dog/tcp")
         self.p, self.sag = self.position, np.zeros(3)
         self.R = sim.memory.array("site_xmat")[self.site].reshape(3, 3).copy()
 
@@ -80,7 +80,7 @@ class Hand:
 def find_lever(sim: gloam.Simulation) -> np.ndarray:
     """Middle of the lever's bar in the world, from one picture of the wrist's depth camera."""
     frame = sim.cameras["dog/wrist_rgbd/depth"].render(("sensor_depth", "segmentation"))
-    bar = [row["part"] for row in sim.labels() if row["geom"] == "lever_bar"]
+    bar = [label.part for label in sim.labels() if label.geom == "lever_bar"]
     v, u = np.nonzero(np.isin(frame.part, bar))
     depth = frame.sensor_depth[v, u]
     if np.count_nonzero(depth) < 30:

@@ -39,7 +39,7 @@ def scatter(sim: gloam.Simulation, rng: np.random.Generator) -> None:
 def look(sim: gloam.Simulation) -> dict[str, np.ndarray]:
     """The points of each object that the camera measures, in the world, (n, 3)."""
     frame = sim.cameras["above"].render(("sensor_depth", "segmentation"))
-    names = {row["instance"]: row["body"] for row in sim.labels()}
+    names = {label.instance: label.body for label in sim.labels()}
     v, u = np.nonzero(frame.sensor_depth)
     depth, ids = frame.sensor_depth[v, u], frame.ids[v, u]
     x, y = (u + 0.5 - frame.K[0, 2]) / frame.K[0, 0], (v + 0.5 - frame.K[1, 2]) / frame.K[1, 1]

@@ -64,14 +64,14 @@ def prepare(seed: int) -> tuple[gloam.Scene, House]:
     return scene, house
 
 
-def follow(sim: gloam.Simulation, route: Points) -> bool:
+def follow(sim: gloam.Simulation, metrics: gloam.MetricStream, route: Points) -> bool:
     """Walks along a route; False: fell, or ran out of time."""
     dog, pursuit = sim.robots["go"], Pursuit(route, AHEAD)
     while np.linalg.norm(dog.pose.p[:2] - route[-1]) > 0.3:
         error = bearing(dog.pose, pursuit.target(dog.pose.p))
         dog.command(vx=SPEED * max(0.0, np.cos(error)) ** 3, yaw_rate=float(np.clip(2.5 * error, -1.2, 1.2)))
         sim.run_until(time=sim.time + 0.1)
-        if sim.metrics["go.fallen"] > 0 or sim.time > LIMIT:
+        if metrics.latest()["go.fallen"] > 0 or sim.time > LIMIT:
             return False
     return True
 
@@ -81,15 +81,15 @@ def walk(seed: int, out: Path) -> dict[str, float]:
     scene, house = prepare(seed)
     with gloam.load(scene) as sim:
         front = sim.bodies[house.front_leaf]
-        sim.metrics  # from here on they count
+        metrics = sim.open_metrics()  # falls count from here on
         with sim.record(out / f"{seed}.mcap", ["/clock", "/tf*"], overwrite=True, embed=True):
             sim.run_until(time=4)  # the smoke spreads
-            is_out = follow(sim, house.to_room)
+            is_out = follow(sim, metrics, house.to_room)
             front.push(force=-60 * house.outward)  # N: someone pushes the front door open from outside
-            is_out = is_out and follow(sim, house.to_exit)
+            is_out = is_out and follow(sim, metrics, house.to_exit)
             sim.robots["go"].command()
             sim.run_until(time=sim.time + 0.5)
-        return {"seed": seed, "out": is_out, "time": sim.time, "hash": sim.hash, **sim.metrics}
+        return {"seed": seed, "out": is_out, "time": sim.time, "hash": sim.hash, **metrics.latest()}
 
 
 def main() -> None:

@@ -34,6 +34,15 @@ class Bridge {
   virtual Status status() const = 0;
 };
 
+/// A kind of bridge, for flags and listings.
+struct BridgeKind {
+  std::string name;  ///< "ros2", as in [bridge.ros2]
+  std::string help;  ///< of its flag
+  /// Requests it with default options, unless it is requested already.
+  void (*request)(BridgeOptions*);
+};
+std::vector<BridgeKind> bridge_kinds();
+
 /// All bridges of one Simulation. They share one list of spawned entities and one claim per robot.
 class Bridges {
  public:

@@ -9,7 +9,8 @@
 
 namespace gloam {
 
-/// Gives its holder exclusive control of a robot; destroying it releases the robot. Must be
+/// Gives its holder exclusive control of a robot, except that every client may stop its
+/// trajectories; destroying it releases the robot. Must be
 /// destroyed before its simulation. Any thread. A recompile keeps it for the robot of the same
 /// name.
 class ControlLease {

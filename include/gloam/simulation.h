@@ -120,6 +120,9 @@ class Simulation {
   /// that no longer exist after a recompile send nothing. Errors: no such topic, an input topic.
   virtual Result<std::unique_ptr<TopicStream>> open_topics(const TopicRequest& request,
                                                            TopicCallback on_message) = 0;
+  /// Subscribes to topics whose streams it shares with other sinks; it begins without topics. The
+  /// subscription must end before the simulation, and `sink` must outlive it. Error: as topics().
+  virtual Result<std::unique_ptr<TopicSubscription>> subscribe(TopicSink& sink) = 0;
   /// Posts the Commands of a message to an input topic; `data` is CDR. Errors: no such input, a
   /// malformed message; as for post().
   virtual Status publish(std::string_view topic, std::span<const uint8_t> data) = 0;

@@ -1,15 +1,15 @@
 #pragma once
 // Options and counts of a simulation.
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "gloam/handle.h"
 #include "gloam/physics_memory.h"
-#include "gloam/result.h"
+#include "gloam/text.h"
 #include "gloam/types.h"
 
 namespace gloam {
@@ -23,9 +23,14 @@ enum class Pace {
   /// in kRealTime. SimulationStats::realtime_factor reports the achieved speed.
   kSensors,
 };
-const char* to_string(Pace pace);  ///< "fast", "lockstep", "realtime", "sensors"
-/// Error: no such pace; the message suggests the nearest name.
-Result<Pace> pace_named(std::string_view name);
+template <>
+struct EnumTable<Pace> {
+  static constexpr const char* kNoun = "pace";
+  static constexpr auto kNames = std::to_array<EnumName<Pace>>({{Pace::kFast, "fast"},
+                                                                {Pace::kLockstep, "lockstep"},
+                                                                {Pace::kRealTime, "realtime"},
+                                                                {Pace::kSensors, "sensors"}});
+};
 /// Whether the simulation waits for its recorders and sensors, so that nothing is lost.
 inline bool waits_for_sensors(Pace pace) { return pace == Pace::kFast || pace == Pace::kSensors; }
 

@@ -1,5 +1,5 @@
 #pragma once
-// Snapshot: one instant of a simulation, immutable. Live runs and replays are both SnapshotSources.
+// Snapshot: one instant of a simulation, or of a World in a given configuration; immutable.
 
 #include <cstdint>
 #include <memory>
@@ -49,12 +49,17 @@ class Snapshot {
 
   JointState operator[](Joint joint) const;
   SensorState operator[](SensorHandle sensor) const;
+  /// Poses X_WB of all mocap bodies, in MuJoCo's order.
+  std::vector<Pose> mocap_poses() const;
   /// The commanded control, the first value if there are several.
   double control(Actuator actuator) const;
-  /// The trajectory of a robot, from its first step until another Command ends it; stays after its
+  /// The trajectory of a joint, from its first step until another Command ends it; stays after its
   /// last point. Null: none.
+  std::shared_ptr<const ActiveTrajectory> trajectory(Joint joint) const;
+  /// The one of its joints' trajectories that started last. Null: none.
   std::shared_ptr<const ActiveTrajectory> trajectory(Robot robot) const;
-  /// Valid as long as the Snapshot. Null: the robot has no actuator models, or this is a replay.
+  /// Valid as long as the Snapshot. Null: the robot has no actuator models, or this is a replay or
+  /// of World::snapshot().
   const ActuatorOutputs* actuators(Robot robot) const;
 
   World world() const;  ///< World of this instant; a recompile replaces it

@@ -3,6 +3,7 @@
 // bridges. Names and types follow REP 103, 105 and 145 and common ROS drivers; docs/topics.md lists
 // the rules.
 
+#include <compare>
 #include <cstdint>
 #include <functional>
 #include <span>
@@ -23,15 +24,28 @@ struct TopicQos {
   int depth = 10;           ///< keep last
 };
 
+/// The element of a World that a topic describes. Topics of one element share a stream.
+struct TopicSource {
+  enum class Kind : uint8_t { kSimulation, kRobot, kCamera, kLidar, kSensor, kGas, kBody };
+  Kind kind = Kind::kSimulation;
+  std::string name = {};  ///< of the element; of the simulation: its part, such as "contacts"
+  auto operator<=>(const TopicSource&) const = default;
+};
+/// "camera", "body".
+const char* to_string(TopicSource::Kind kind);
+/// "camera front", "mocap body hand"; the simulation's parts are their name alone.
+std::string to_string(const TopicSource& source);
+
 struct TopicInfo {
   std::string name;        ///< "/front/image_raw"
   std::string type;        ///< "sensor_msgs/msg/Image"
   std::string frame_id;    ///< of the header; "" if the type has none
   Rational rate = {0, 1};  ///< messages per second of simulation time [Hz]; 0 = every step
   TopicQos qos = {};
-  bool is_input = false;    ///< accepted by Simulation::publish
-  bool is_logged = true;    ///< recorded by logs that do not name topics
-  std::string source = {};  ///< element that it describes: "camera front", "robot go1"
+  bool is_input = false;  ///< accepted by Simulation::publish
+  bool is_logged = true;  ///< recorded by logs that do not name topics
+  TopicSource source = {};
+  bool is_large = false;  ///< messages of kilobytes to megabytes, such as images and point clouds
 };
 
 /// The type of a message, for declaring topics.
@@ -74,6 +88,40 @@ struct TopicRequest {
 };
 
 /// Closing the stream waits for its last callbacks.
-class TopicStream : public Stream {};
+class TopicStream : public Stream {
+ public:
+  /// Replaces the topics. Streams of topics that stay go on: a camera that gains or loses topics is
+  /// not reopened. One call at a time. Errors: as Simulation::open_topics.
+  virtual Status set_topics(std::span<const std::string> names) = 0;
+};
+
+/// A reader that shares streams with other readers, such as a bridge.
+class TopicSink {
+ public:
+  virtual ~TopicSink() = default;
+  /// A message of a topic that it has subscribed to. On threads of the streams, for one topic on
+  /// one thread at a time; must not block.
+  virtual void on_message(const TopicMessage& message) = 0;
+  /// All topics, inputs too: before Simulation::subscribe returns, and after each recompile on a
+  /// thread of the hub.
+  virtual void on_topics(std::span<const TopicInfo> topics) = 0;
+  /// A topic that it has subscribed to does not exist, cannot be opened or has ended. The hub tries
+  /// again every second, and reports each cause once. On a thread of the hub.
+  virtual void on_error(const std::string& topic, const Error& why) = 0;
+};
+
+/// Ending the subscription waits for the last callback of its sink, so a callback must not end it.
+class TopicSubscription {
+ public:
+  virtual ~TopicSubscription() = default;
+  /// Replaces the topics, by their names. It returns at once: the hub's thread opens the streams,
+  /// and keeps a stream for two seconds after its last reader has gone. Any thread.
+  virtual void set_topics(std::vector<std::string> names) = 0;
+  /// For another reader behind the sink: visits the last message of a latched topic if there is
+  /// one, and reports the error of a topic again. Any thread.
+  virtual void repeat(const std::string& topic, const TopicCallback& visit) = 0;
+  /// Messages that the streams of its topics have lost.
+  virtual int64_t dropped() const = 0;
+};
 
 }  // namespace gloam

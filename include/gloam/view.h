@@ -22,7 +22,7 @@ struct ViewOptions {
   std::string host = "127.0.0.1";  ///< a loopback name only: 127.x.y.z, localhost or ::1
   int max_clients = 32;            ///< limit of open connections, 1 … 1024
   std::string camera = "free";     ///< initial camera: full name, or "free"
-  RenderOptions render = {.tier = "interactive"};
+  RenderOptions render = {.tier = RenderTier::kInteractive};
   int width = 0, height = 0;    ///< [px]; 0 = the camera's own
   double rate = 20;             ///< images per second of simulation time, (0, 240]
   Pace pace = Pace::kRealTime;  ///< pace that the server sets

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -16,6 +17,7 @@
 namespace gloam {
 
 struct CompiledWorld;  // src/world/world.h
+class Snapshot;        // gloam/snapshot.h
 
 /// Name and kind of an element, for listings.
 struct NamedElement {
@@ -106,6 +108,15 @@ class World {
   /// Columns of metrics.csv except the time. Error: a [[metric]] or [[goal]] of the scene that does
   /// not parse or refers to unknown elements.
   Result<std::vector<MetricInfo>> metrics() const;
+
+  /// An instant of a given configuration at rest, without a simulation: qpos (nq) [m, rad], whose
+  /// quaternions are normalised; velocities are 0, all other parts of the state are initial, and
+  /// effects have not begun (gases are clear, water has no ripples). `time` [s], 0 ≤ time < 1e9.
+  /// `mocap`: poses X_WB of all mocap bodies in MuJoCo's order; empty = as compiled (a simulation
+  /// moves agents to their places when it starts). No motion is measured between two such instants.
+  /// Errors: a wrong size, a number that is not finite or out of range, reported by MuJoCo.
+  Result<Snapshot> snapshot(std::span<const double> qpos, double time = 0,
+                            std::span<const Pose> mocap = {}) const;
 
   WorldInfo info() const;
   /// Suspicious but accepted properties of the scene, with their locations: open meshes, sizes that

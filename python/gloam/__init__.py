@@ -2,10 +2,10 @@
 
     import gloam
     sim = gloam.load("house.toml", seed=7)
-    dog, cam = sim.robots["go1"], sim.cameras["head"]
+    dog, cam = sim.robots["go1"], sim.cameras["head"].open()
     while sim.time < 20:
         dog.command(vx=0.6)
-        frame = sim.step_until(cam)
+        frame = cam.next()
 """
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ if _built:
 from gloam import _core  # noqa: E402
 
 from .batch import check, convert, evaluate, generate, render, report, run  # noqa: E402
-from .cameras import Camera, Frame, Lidar, Scan, Sensor, Subscription  # noqa: E402
+from .cameras import Camera, Lidar, Sensor  # noqa: E402
 from .catalogue import RobotModel, guess_robot, robot_model, robots  # noqa: E402
 from .elements import Actuator, Body, Joint, Pose, Robot, yaw_quaternion  # noqa: E402
 from .errors import (  # noqa: E402
@@ -35,10 +35,29 @@ from .errors import (  # noqa: E402
     UnsupportedError,
     UsageError,
 )
+from .frames import CameraInfo, Event, Frame, ObjectView  # noqa: E402
+from .info import (  # noqa: E402
+    Contact,
+    InputInfo,
+    Label,
+    LoggedTopic,
+    LogInfo,
+    LogRecovery,
+    MetricInfo,
+    ReplayVariant,
+    SensorCost,
+    SimulationStats,
+    StreamInfo,
+    TopicInfo,
+    WorldInfo,
+)
 from .logs import Log, RunReport, Verification, replay  # noqa: E402
+from .messages import Message, Sample, Scan  # noqa: E402
 from .policy import Policy  # noqa: E402
 from .scene import Option, Scene, describe  # noqa: E402
 from .simulation import Checkpoint, Simulation, load  # noqa: E402
+from .snapshot import Snapshot  # noqa: E402
+from .streams import CameraStream, LidarStream, MetricStream, SensorStream, Stream, Subscription  # noqa: E402
 from .world import World  # noqa: E402
 from . import distribute, ik  # noqa: E402
 
@@ -58,8 +77,14 @@ set_thread_count = _core.set_thread_count
 set_log_level = _core.set_log_level
 
 __all__ = [
-    "Actuator", "Body", "Camera", "Checkpoint", "ClosedError", "DivergedError", "Error", "ForkedError", "Frame", "InputError", "IoError", "Joint",
-    "Lidar", "Log", "NotFoundError", "Option", "PartialError", "Policy", "Pose", "Robot", "RobotModel", "RunReport", "Scan", "Scene", "Sensor", "Simulation",
-    "StoppedError", "StuckError", "Subscription", "UnsupportedError", "UsageError", "Verification", "World", "check", "configuration", "convert", "describe",
-    "distribute", "evaluate", "generate", "guess_robot", "home", "ik", "load", "make_env", "make_vec_env", "render", "replay", "report", "robot_model", "robots", "run", "set_log_level", "set_thread_count", "yaw_quaternion",
+    "Actuator", "Body", "Camera", "CameraInfo", "CameraStream", "Checkpoint", "ClosedError", "Contact",
+    "DivergedError", "Error", "Event", "ForkedError", "Frame", "InputError", "InputInfo", "IoError", "Joint",
+    "Label", "Lidar", "LidarStream", "Log", "LogInfo", "LogRecovery", "LoggedTopic", "Message", "MetricInfo",
+    "MetricStream", "NotFoundError", "ObjectView", "Option", "PartialError", "Policy", "Pose", "ReplayVariant",
+    "Robot", "RobotModel", "RunReport", "Sample", "Scan", "Scene", "Sensor", "SensorCost", "SensorStream",
+    "Simulation", "SimulationStats", "Snapshot", "StoppedError", "Stream", "StreamInfo", "StuckError",
+    "Subscription", "TopicInfo", "UnsupportedError", "UsageError", "Verification", "World", "WorldInfo", "check",
+    "configuration", "convert", "describe", "distribute", "evaluate", "generate", "guess_robot", "home", "ik",
+    "load", "make_env", "make_vec_env", "render", "replay", "report", "robot_model", "robots", "run",
+    "set_log_level", "set_thread_count", "yaw_quaternion",
 ]

@@ -10,9 +10,9 @@ from typing import Any
 
 from gloam import _core
 
-from .cameras import Frame
 from .elements import Pose
 from .errors import PartialError, UsageError
+from .frames import Frame
 from .logs import Log, RunReport
 from .progress import ProgressLike, watch
 from .scene import Scene, as_scene

@@ -187,7 +187,7 @@ class Body(Element):
         return self._sim._core_world.find_body(self.name)
 
     def _state(self) -> Any:
-        return self._sim._solver.body(self._sim._core, self._now())
+        return self._sim._solver.body(self._sim._core.latest, self._now())
 
     @property
     def pose(self) -> Pose:
@@ -240,7 +240,7 @@ class Actuator(Element):
     @property
     def force(self) -> float:
         """[N, N m]"""
-        return float(self._sim._solver.force(self._sim._core, self._now()))
+        return float(self._sim._solver.force(self._sim._core.latest, self._now()))
 
 
 class Robot(Element):
@@ -254,23 +254,23 @@ class Robot(Element):
 
     def _find(self) -> Any:
         for robot in self._sim._core_world.robots():
-            if robot["name"] == self.name:
+            if robot.name == self.name:
                 self._info = robot
-                return robot["robot"]
+                return robot.robot
         raise NotFoundError(f"there is no robot '{self.name}'", hint=_core.suggest_name(self.name, list(self._sim.robots)))
 
     def _changed(self) -> None:
         names = self._sim._world.info
-        self._joint_names = [names["joints"][j.id] for j in self._info["joints"]]
-        self._actuator_names = [names["actuators"][a.id] for a in self._info["actuators"]]
+        self._joint_names = [names.joints[j.id] for j in self._info.joints]
+        self._actuator_names = [names.actuators[a.id] for a in self._info.actuators]
         memory = self._sim.memory
         kinds = memory.array("jnt_type")
-        single = [j.id for j in self._info["joints"] if kinds[j.id] >= 2]
+        single = [j.id for j in self._info.joints if kinds[j.id] >= 2]
         self._qpos = _Picked(memory, "qpos", [int(memory.array("jnt_qposadr")[j]) for j in single])
         self._qvel = _Picked(memory, "qvel", [int(memory.array("jnt_dofadr")[j]) for j in single])
-        self._single_names = [names["joints"][j] for j in single]
+        self._single_names = [names.joints[j] for j in single]
         addresses = memory.array("actuator_ctrladr")
-        self._ctrl = _Picked(memory, "ctrl", [int(addresses[a.id]) for a in self._info["actuators"]])
+        self._ctrl = _Picked(memory, "ctrl", [int(addresses[a.id]) for a in self._info.actuators])
 
     @property
     def joint_names(self) -> list[str]:
@@ -298,25 +298,25 @@ class Robot(Element):
     @property
     def root(self) -> Body:
         self._now()
-        return self._sim.bodies[self._sim._world.info["bodies"][self._info["root"].id]]
+        return self._sim.bodies[self._sim._world.info.bodies[self._info.root.id]]
 
     @property
     def pose(self) -> Pose:
         """X_WB of its root."""
         self._now()
-        return Pose(*(read_only(part) for part in self._sim._solver.body(self._sim._core, self._info["root"])[0]))
+        return Pose(*(read_only(part) for part in self._sim._solver.body(self._sim._core.latest, self._info.root)[0]))
 
     @property
     def velocity(self) -> Doubles:
         """Velocity of its root's origin, world axes [m/s], (3,)."""
         self._now()
-        return read_only(self._sim._solver.body(self._sim._core, self._info["root"])[1])
+        return read_only(self._sim._solver.body(self._sim._core.latest, self._info.root)[1])
 
     @property
     def angular_velocity(self) -> Doubles:
         """[rad/s], world axes, (3,)"""
         self._now()
-        return read_only(self._sim._solver.body(self._sim._core, self._info["root"])[2])
+        return read_only(self._sim._solver.body(self._sim._core.latest, self._info.root)[2])
 
     @property
     def qpos(self) -> Doubles:
@@ -362,7 +362,7 @@ class Robot(Element):
 
     def _of_motors(self, quantity: str) -> Doubles:
         values = self._readings()[quantity]
-        return read_only(np.array([values.get(a.id, np.nan) for a in self._info["actuators"]]))
+        return read_only(np.array([values.get(a.id, np.nan) for a in self._info.actuators]))
 
     def _readings(self) -> dict[str, Any]:
         readings = self._sim._core.actuator_readings(self._now())
@@ -385,8 +385,8 @@ class Robot(Element):
         """Like Simulation.scale_dynamics(), for the robot's own bodies, geoms, actuators and joints, in the model's
         order."""
         self._now()
-        actuators = [actuator.id for actuator in self._info["actuators"]]
-        Dynamics(self._sim, self._info["root"].id, actuators).scale(mass=mass, friction=friction, gains=gains, armature=armature, damping=damping)
+        actuators = [actuator.id for actuator in self._info.actuators]
+        Dynamics(self._sim, self._info.root.id, actuators).scale(mass=mass, friction=friction, gains=gains, armature=armature, damping=damping)
 
     def set_joint_goals(self, goals: Mapping[str, float]) -> None:
         """Positions [rad, m] by joint names, with or without the robot's prefix, for its controller."""
@@ -418,7 +418,7 @@ class Robot(Element):
     def follow(self, positions: ArrayLike, times: ArrayLike | None = None, *, velocities: ArrayLike | None = None,
                accelerations: ArrayLike | None = None, joints: Sequence[str] | None = None, profile: str | None = None,
                max_velocity: ArrayLike = 1.0, max_acceleration: ArrayLike = 4.0) -> None:
-        """Makes its controller follow a trajectory from the next step, which replaces the previous one.
+        """Makes its controller follow a trajectory from the next step, which replaces the trajectories of the same joints.
 
         `positions` [rad, m], (points, joints) or (joints,). With `times` [s after the start], (points,): a spline
         through the points, with velocities and accelerations where they are given. Without: profile "trapezoidal"
@@ -460,12 +460,12 @@ class Robot(Element):
         """Puts a robot with a free root at `position` [m] at the next step, turned by `yaw` [rad] or to `quat` (wxyz), at rest."""
         self._now()
         memory = self._sim.memory
-        root = self._info["root"].id
+        root = self._info.root.id
         joint = int(memory.array("body_jntadr")[root])
         if joint < 0 or memory.array("jnt_type")[joint] != 0:
             raise UsageError(f"robot '{self.name}' is fixed: its root has no free joint")
         turn = yaw_quaternion(yaw) if quat is None else _sized(quat, 4, "quat")
-        handle = next(j for j in self._info["joints"] if j.id == joint)
+        handle = next(j for j in self._info.joints if j.id == joint)
         self._sim._core.set_joint_state(handle, np.concatenate([_sized(position, 3, "position"), turn]), np.zeros(6))
 
     @contextmanager

@@ -5,12 +5,14 @@ import os
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any, Literal, cast
 
 from gloam import _core
 
 from ._toml import to_text
+from .elements import Doubles
 from .errors import PartialError, UsageError
+from .info import LoggedTopic, LogInfo, LogRecovery, ReplayVariant, log_info_of, of
 from .progress import ProgressLike, watch
 from .simulation import Simulation
 from .world import World
@@ -68,16 +70,16 @@ class Log:
     def __init__(self, file: PathLike, folder: PathLike | None = None) -> None:
         self.file = Path(file)
         self._folder = "" if folder is None else os.fspath(folder)
-        self.info: dict[str, Any] = dict(_core.describe_log(self.file))
+        self.info: LogInfo = log_info_of(_core.describe_log(self.file))
 
     @property
-    def topics(self) -> list[dict[str, Any]]:
-        return list(self.info["topics"])
+    def topics(self) -> list[LoggedTopic]:
+        return list(self.info.topics)
 
     @property
     def duration(self) -> float:
         """[s]"""
-        return float(self.info["duration"])
+        return self.info.duration
 
     def verify(self, progress: ProgressLike = None) -> Verification:
         """Steps its runs again from the scene and Commands. Raises InputError: a log of another program, changed
@@ -130,13 +132,13 @@ class Log:
 
     def variants(self, randomize: PathLike, count: int, out: PathLike, *, first_seed: int = 1, settings: Mapping[str, Any] | None = None,
                  motion: Motion = "stepped", outputs: Sequence[str] = (), overwrite: bool = False, progress: ProgressLike = None,
-                 **request: Any) -> list[dict[str, Any]]:
+                 **request: Any) -> list[ReplayVariant]:
         """Records replays that differ in the values drawn by the [[randomize]] tables of a file, in OUT/0000, 0001 …;
         another call resumes a cancelled one."""
         options = self._options(settings, motion, 0, (), outputs)
         options["request"] = {"out": Path(out), "overwrite": overwrite, **request}
         with watch(progress, f"variants of {self.file.name}") as told:
-            return list(_core.replay_variants(self.file, options, Path(randomize), count, first_seed, told))
+            return [of(ReplayVariant, row) for row in _core.replay_variants(self.file, options, Path(randomize), count, first_seed, told)]
 
     def at(self, time: float, run: int = 0, seed: int = 1) -> Simulation:
         """Returns a paused simulation at an instant of the run [s], which can be continued."""
@@ -154,15 +156,15 @@ class Log:
             format = Path(path).suffix.removeprefix(".") or "png"
         return int(_core.export_topic(self.file, topic, Path(path), format))
 
-    def trajectory(self, topic: str) -> tuple[Any, Any]:
+    def trajectory(self, topic: str) -> tuple[Doubles, Doubles]:
         """Times [s], (n,), and poses (n, 7) x, y, z, qw, qx, qy, qz of a topic of poses."""
         times, poses = _core.export_trajectory(self.file, topic)
-        return times, poses
+        return cast(Doubles, times), cast(Doubles, poses)
 
-    def recover(self, path: PathLike) -> dict[str, Any]:
+    def recover(self, path: PathLike) -> LogRecovery:
         """Writes the intact messages of a damaged log to a new file."""
         whole, messages, lost, damage = _core.recover_log(self.file, Path(path))
-        return {"is_whole": whole, "messages": messages, "messages_lost": lost, "damage": list(damage)}
+        return LogRecovery(whole, messages, lost, tuple(damage))
 
     def _options(self, settings: Mapping[str, Any] | None, motion: str, run: int, overlays: Sequence[PathLike],
                  outputs: Sequence[str]) -> dict[str, Any]:
@@ -170,7 +172,7 @@ class Log:
                 "settings": [(path, to_text(value, path)) for path, value in (settings or {}).items()]}
 
     def __iter__(self) -> Iterator[str]:
-        return (topic["name"] for topic in self.topics)
+        return (topic.name for topic in self.info.topics)
 
     def __repr__(self) -> str:
         return f"<gloam.Log '{self.file.name}', {self.duration:.3f} s, {len(self.topics)} topics>"

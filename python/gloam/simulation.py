@@ -15,13 +15,16 @@ from numpy.typing import ArrayLike
 
 from gloam import _core
 
-from .cameras import Camera, Frame, Lidar, Scan, Sensor, Source, Subscription
+from .cameras import Camera, Lidar, Sensor
 from .dynamics import Dynamics
 from .elements import Actuator, Body, Joint, Named, Robot
 from .errors import StuckError, UsageError
+from .info import Contact, Label, SimulationStats, TopicInfo, contact_of, of, stats_of
+from .messages import Message
 from .mujoco_memory import MujocoMemory
 from .progress import ProgressLike
 from .scene import Scene, as_scene
+from .streams import M, MetricStream, Stream, Subscription
 from .world import World
 
 if TYPE_CHECKING:
@@ -68,12 +71,11 @@ class Simulation:
         self._memory: Any = None
         self._generation = 0
         self._solver = _core.Solver()
-        self._renderer: Any = None
-        self._leases: dict[str, Any] = {}
+        self._renderer: _core.Painter | None = None
+        self._leases: dict[str, _core.Lease] = {}
         self._drives: dict[str, PolicyDriver] = {}  # of robots that a policy drives
-        self._other: Simulation | None = None
-        self._log: Any = None
-        self._metrics: Any = None
+        self._log: _core.LogStream | None = None
+        self._streams: set[Stream[Any]] = set()  # with callbacks, which stay open
         self.joints: Named[Joint] = Named("joint", lambda: self._world.joints, lambda n: Joint(self, n))
         self.bodies: Named[Body] = Named("body", lambda: self._world.bodies, lambda n: Body(self, n))
         self.actuators: Named[Actuator] = Named("actuator", lambda: self._world.actuators, lambda n: Actuator(self, n))
@@ -106,8 +108,9 @@ class Simulation:
         return float(den / num)
 
     @property
-    def stats(self) -> dict[str, Any]:
-        return dict(self._core.stats)
+    def stats(self) -> SimulationStats:
+        """Progress, and the cost and rate of each open stream."""
+        return stats_of(self._core.stats)
 
     @property
     def paused(self) -> bool:
@@ -155,31 +158,17 @@ class Simulation:
         """mujoco.MjData in which physics steps; values written while paused are inputs of the next step."""
         return MujocoMemory.required(self._mujoco).data(self.memory)
 
-    def contacts(self) -> list[dict[str, Any]]:
-        """Contacts of the present instant: geoms (names), position, normal, distance, force on the second one [N], torque."""
-        names = self._world.info["geoms"]
-        made = list(self._solver.contacts(self._core))
-        for contact in made:
-            contact["geoms"] = tuple(names[g] if 0 <= g < len(names) else "" for g in contact["geoms"])
-        return made
+    def contacts(self) -> list[Contact]:
+        """Contacts of the present instant."""
+        return [contact_of(row, self._world.info.geoms) for row in self._solver.contacts(self._core.latest)]
 
     def value(self, field: str, element: str = "") -> Any:
         """A field of mjData or mjModel of the present instant after a forward pass: value("xfrc_applied", "go1/trunk")."""
-        return self._solver.value(self._core, field, element)
+        return self._solver.value(self._core.latest, field, element)
 
-    def labels(self) -> list[dict[str, Any]]:
-        """One row for each rendered geom: part, geom, body, instance, instance_name, semantic, semantic_name."""
-        return list(self._core.labels())
-
-    @property
-    def metrics(self) -> dict[str, float]:
-        """Present values of all metrics of the scene (docs/metrics.md), sampled at record.metrics_rate as in a
-        recorded run, starting with the first access."""
-        from .metrics import PresentMetrics
-
-        if self._metrics is None:
-            self._metrics = PresentMetrics(self)
-        return dict(self._metrics.values())
+    def labels(self) -> list[Label]:
+        """The rendered geoms, with their ids in images."""
+        return [of(Label, row) for row in self._core.labels()]
 
     # ---- time ----
     def step(self, n: int = 1) -> None:
@@ -197,12 +186,14 @@ class Simulation:
             step = int(np.ceil(float(time) * num / den - 1e-6))  # type: ignore[arg-type]
         self._core.run_until(step)
 
-    def step_until(self, source: Source) -> Any:
-        """Steps until the next message of a camera, LiDAR or sensor reaches a reader, and returns it. The first
-        message may be from this instant."""
-        if not isinstance(source, Source) or source._sim is not self:
-            raise TypeError(f"expected a camera, LiDAR or sensor of this simulation, got {source!r}")
-        return source._next()
+    def step_until(self, stream: Stream[M]) -> M:
+        """Steps until the next message of an open stream of a camera, LiDAR or sensor reaches a reader, and returns it,
+        like stream.next(). The first message may be from this instant."""
+        if not isinstance(stream, Stream) or stream._sim is not self:
+            raise TypeError(f"expected an open stream of this simulation, such as sim.cameras[…].open(), got {stream!r}")
+        if not self.paused:
+            raise UsageError("the simulation is running", hint="pause() it before step_until(), or call next() of the stream")
+        return stream.next()
 
     def run(self, pace: Pace | None = None, speed: float = 1.0) -> None:
         """Runs in the background until pause()."""
@@ -216,8 +207,6 @@ class Simulation:
     def reset(self) -> None:
         """Returns to the initial state and pauses; time and frame numbers restart at 0."""
         self._core.reset()
-        if self._metrics is not None:
-            self._metrics.begin()
         for drive in self._drives.values():
             drive._after_reset()
 
@@ -255,16 +244,10 @@ class Simulation:
         self._drives = {name: drive for name, drive in self._drives.items() if name in self.robots}
         self._renderer = None
         self._solver = _core.Solver()
-        if self._other is not None:
-            self._other.close()
-            self._other = None
         if self._memory is not None:
             self._look()
         for elements in (self.joints, self.bodies, self.actuators, self.robots):
             elements.forget_world()
-        if self._metrics is not None:
-            self._metrics.close()
-            self._metrics = None
 
     def set_live_field(self, field: str, values: Any, first: int = 0) -> None:
         """Changes a field of the model at the next step, from element `first` on: "gravity", "body_mass", "geom_color" … (docs/python.md).
@@ -299,18 +282,26 @@ class Simulation:
         self._core.set_hook(call)
 
     # ---- topics ----
-    def topics(self) -> list[dict[str, Any]]:
-        return list(self._core.topics())
+    def topics(self) -> list[TopicInfo]:
+        """Topics that it publishes and accepts."""
+        return [of(TopicInfo, row) for row in self._core.topics()]
 
-    def subscribe(self, topics: Sequence[str], callback: Callable[[Any], None] | None = None, required: bool = True) -> Subscription:
+    def subscribe(self, topics: Sequence[str], callback: Callable[[Message], None] | None = None, required: bool = True) -> Subscription:
         """Opens topics by name, * matches any text: for message in subscription: message.decode()."""
         names = [topics] if isinstance(topics, str) else list(topics)
-        return Subscription(_core.open_topics(self._core, names, required, callback))
+        return Subscription(self, ", ".join(names), lambda call: _core.open_topics(self._core, names, required, call),
+                            Message, callback)
+
+    def open_metrics(self, *, required: bool = True) -> MetricStream:
+        """Opens the values of all metrics of the scene (docs/metrics.md), which accumulate from now on, sampled at
+        record.metrics_rate as in a recorded run: metrics.latest()["go.path_length_m"]."""
+        return MetricStream(self, "/metrics", lambda call: _core.open_topics(self._core, ["/metrics"], required, call, every_sample=True),
+                            _metric_values)
 
     def publish(self, topic: str, message: Mapping[str, Any] | bytes) -> None:
         """Publishes a message to an input topic: its fields as a dict (omitted fields are 0), or CDR."""
         if not isinstance(message, bytes):
-            kinds = {t["name"]: t["type"] for t in self.topics() if t["is_input"]}
+            kinds = {topic.name: topic.type for topic in self.topics() if topic.is_input}
             if topic not in kinds:
                 raise UsageError(f"no input topic '{topic}'", hint=_core.suggest_name(topic, list(kinds)))
             message = _core.encode_message(kinds[topic], dict(message))
@@ -318,7 +309,7 @@ class Simulation:
 
     # ---- records, pictures, pages ----
     @contextmanager
-    def record(self, file: str | os.PathLike[str], topics: Sequence[str] | None = None, *, overwrite: bool = False, **options: Any) -> Iterator[Any]:
+    def record(self, file: str | os.PathLike[str], topics: Sequence[str] | None = None, *, overwrite: bool = False, **options: Any) -> Iterator[_core.LogStream]:
         """Records a log (MCAP) until the end of the block. `options`: required, durable, embed, state_rate, width,
         height."""
         if topics is not None:
@@ -333,7 +324,7 @@ class Simulation:
                 log.finish()
 
     @contextmanager
-    def view(self, port: int = 0, camera: str = "free", **render: Any) -> Iterator[Any]:
+    def view(self, port: int = 0, camera: str = "free", **render: Any) -> Iterator[_core.ViewServer]:
         """Serves the live page on this machine: .url. 0 = any free port."""
         server = _core.start_view(self._core, port, camera, render)
         try:
@@ -341,29 +332,18 @@ class Simulation:
         finally:
             server.stop()
 
-    def _painter(self) -> Any:
+    def _painter(self) -> _core.Painter:
         if self._renderer is None:
             self._renderer = _core.Painter(self._core_world)
         return self._renderer
 
-    def _posed(self, qpos: ArrayLike) -> Any:
-        """A separate, paused run at rest in another state of the same World, reached by a step so short that nothing
-        moves."""
-        if self._other is None or self._other.world is not self._world:
-            self._other = Simulation(self._world, self.seed, timestep=1e-9)
-        other = self._other
-        other.reset()
-        other.memory.array("qpos")[:] = np.asarray(qpos, dtype=np.float64).reshape(other.memory.array("qpos").shape)
-        other.step()
-        return other._core
-
-    def _lease_of_joint(self, name: str) -> Any:
+    def _lease_of_joint(self, name: str) -> _core.Lease | None:
         return self._lease_where(lambda robot: name in robot.joints)
 
-    def _lease_of_actuator(self, name: str) -> Any:
+    def _lease_of_actuator(self, name: str) -> _core.Lease | None:
         return self._lease_where(lambda robot: name in robot.actuators)
 
-    def _lease_where(self, has: Callable[[Robot], bool]) -> Any:
+    def _lease_where(self, has: Callable[[Robot], bool]) -> _core.Lease | None:
         for robot, lease in self._leases.items():
             if has(self.robots[robot]):
                 return lease
@@ -379,10 +359,9 @@ class Simulation:
                     self._log.finish()
                 self._core.close()
             self._drives.clear()
+            self._streams.clear()
         finally:
             self._renderer = None  # its memory must not wait for the garbage collector, which finds cycles late
-            if self._other is not None:
-                self._other.close()
 
     def __enter__(self) -> Simulation:
         return self
@@ -398,6 +377,11 @@ class Simulation:
         if self._core.is_closed:
             return "<gloam.Simulation, closed>"
         return f"<gloam.Simulation of '{self.scene.name}' at {self.time:.4f} s>"
+
+
+def _metric_values(message: _core.Message) -> dict[str, float]:
+    values: Any = message.decode()
+    return {name: float(value) for name, value in zip(values["names"], values["values"], strict=True)}
 
 
 @atexit.register
@@ -433,4 +417,4 @@ def load(source: Any, seed: int | None = None, timestep: float | None = None, pa
     return Simulation(scene.compile(progress), seed, timestep, pace, speed)
 
 
-__all__ = ["Checkpoint", "Frame", "Scan", "Simulation", "load"]
+__all__ = ["Checkpoint", "Simulation", "load"]

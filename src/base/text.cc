@@ -56,6 +56,14 @@ std::string suggest_name(std::string_view word, std::span<const std::string> can
   return fmt::format("one of: {}", fmt::join(candidates, ", "));
 }
 
+Error unknown_name(std::string_view noun, std::string_view name,
+                   std::span<const std::string> names) {
+  return {ErrorKind::kUsage,
+          fmt::format("there is no {} '{}'", noun, name),
+          {},
+          suggest_name(name, names)};
+}
+
 std::string lower_case(std::string_view text) {
   std::string lower(text);
   for (char& c : lower)

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/device.h"
+#include "base/member_list.h"
 
 namespace gloam {
 
@@ -25,6 +26,8 @@ GLOAM_HD float select(bool condition, float a, float b) { return condition ? a :
 template <class F>
 struct Vec2Of {
   F x{}, y{};
+  using Members = MemberList<&Vec2Of::x, &Vec2Of::y>;
+
   friend GLOAM_HD Vec2Of operator+(Vec2Of a, Vec2Of b) { return {a.x + b.x, a.y + b.y}; }
   friend GLOAM_HD Vec2Of operator-(Vec2Of a, Vec2Of b) { return {a.x - b.x, a.y - b.y}; }
   friend GLOAM_HD Vec2Of operator*(Vec2Of a, F s) { return {a.x * s, a.y * s}; }
@@ -35,6 +38,8 @@ using Vec2f = Vec2Of<float>;
 template <class F>
 struct Vec3Of {
   F x{}, y{}, z{};
+  using Members = MemberList<&Vec3Of::x, &Vec3Of::y, &Vec3Of::z>;
+
   GLOAM_HD F operator[](int i) const { return i == 0 ? x : (i == 1 ? y : z); }
 
   friend GLOAM_HD Vec3Of operator+(Vec3Of a, Vec3Of b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
@@ -72,6 +77,7 @@ template <class F>
 struct AffineOf {
   Vec3Of<F> x{F(1.0f), F(0.0f), F(0.0f)}, y{F(0.0f), F(1.0f), F(0.0f)},
       z{F(0.0f), F(0.0f), F(1.0f)}, p{F(0.0f), F(0.0f), F(0.0f)};
+  using Members = MemberList<&AffineOf::x, &AffineOf::y, &AffineOf::z, &AffineOf::p>;
 };
 using Affine3f = AffineOf<float>;
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <utility>
 
 #include "bridge/bridge_list.h"
 #include "web/access.h"
@@ -32,11 +33,13 @@ class BridgesOfRun final : public Bridges {
       : operations_(simulation), context_{simulation, operations_, player, std::move(token)} {}
 
   Status start_all(const BridgeOptions& options) {
-    if (options.ros2) GLOAM_TRY_STATUS(add(bridge::start_ros2(context_, *options.ros2)));
-    if (options.zmq) GLOAM_TRY_STATUS(add(bridge::start_zmq(context_, *options.zmq)));
-    if (options.foxglove)
-      GLOAM_TRY_STATUS(add(bridge::start_foxglove(context_, *options.foxglove)));
-    return {};
+    Status status;
+    const auto start = [&](const auto& row) {
+      if (const auto& own = options.*row.options; own && status.ok())
+        status = add(row.start(context_, *own));
+    };
+    std::apply([&](const auto&... rows) { (start(rows), ...); }, bridge::kBridges);
+    return status;
   }
   const std::vector<std::unique_ptr<Bridge>>& list() const override { return bridges_; }
   bool end_asked() const override { return operations_.end_asked(); }
@@ -54,6 +57,20 @@ class BridgesOfRun final : public Bridges {
 };
 
 }  // namespace
+
+std::vector<BridgeKind> bridge_kinds() {
+  const auto kind = []<size_t kRow>(std::integral_constant<size_t, kRow>) {
+    const auto& row = std::get<kRow>(bridge::kBridges);
+    const auto request = [](BridgeOptions* options) {
+      auto& own = options->*std::get<kRow>(bridge::kBridges).options;
+      if (!own) own.emplace();
+    };
+    return BridgeKind{row.name, row.help, request};
+  };
+  return [&]<size_t... kRows>(std::index_sequence<kRows...>) {
+    return std::vector<BridgeKind>{kind(std::integral_constant<size_t, kRows>())...};
+  }(std::make_index_sequence<std::tuple_size_v<decltype(bridge::kBridges)>>());
+}
 
 Result<std::unique_ptr<Bridges>> Bridges::start(Simulation& simulation,
                                                 const BridgeOptions& options, LogPlayer* player) {

@@ -17,6 +17,10 @@ VolumeGrid between(const VolumeGrid& before, const VolumeGrid& after, float shar
 }  // namespace
 
 void FieldWindow::read(VolumeGrid* density, VolumeGrid* temperature, VolumeGrid* flame) const {
+  if (before == nullptr) {
+    *density = *temperature = *flame = nullptr;
+    return;
+  }
   before->wait();
   *density = before->density();
   *temperature = before->temperature();

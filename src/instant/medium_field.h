@@ -43,7 +43,7 @@ class MediumField {
   std::atomic<bool> done_{false};
 };
 
-/// The two versions between which an instant lies.
+/// The two versions between which an instant lies. No `before`: the effect has not begun.
 struct FieldWindow {
   std::shared_ptr<const MediumField> before, after;
   float share = 0;  ///< weight of `after`, 0 <= … < 1

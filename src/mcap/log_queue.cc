@@ -1,6 +1,5 @@
 #include "mcap/log_queue.h"
 
-#include <algorithm>
 #include <numeric>
 #include <optional>
 #include <utility>
@@ -16,7 +15,10 @@ constexpr uint64_t kLargestKept = 16 << 20;  // [bytes] of a buffer that is used
 }  // namespace
 
 LogQueue::LogQueue(std::unique_ptr<McapWriter> writer, const LogQueueOptions& options)
-    : writer_(std::move(writer)), options_(options), thread_([this] { run(); }) {}
+    : writer_(std::move(writer)),
+      flush_interval_(options.flush_interval),
+      items_({.items = options.most_messages, .bytes = options.most_bytes}, options.overflow),
+      thread_([this] { run(); }) {}
 
 LogQueue::~LogQueue() {
   if (Status closed = close(); !closed) log_error("{}", closed.error().to_string());
@@ -31,56 +33,24 @@ std::vector<uint8_t> LogQueue::take_buffer() {
 }
 
 Status LogQueue::push(LogQueueMessage message) {
-  const uint64_t bytes = message.data.size();
-  std::unique_lock lock(mutex_);
-  if (options_.policy == LogQueuePolicy::kWait) {
-    room_.wait(lock, [&] { return closing_ || !status_ || !is_full_locked(bytes); });
-  } else {
-    while (is_full_locked(bytes)) drop_oldest_locked();
-  }
-  GLOAM_TRY_STATUS(refuse_locked());
-  waiting_bytes_ += bytes;
-  ++waiting_messages_;
-  items_.push_back(std::move(message));
-  work_.notify_one();
-  return {};
+  const size_t bytes = message.data.size();
+  return push(std::move(message), {.bytes = bytes});
 }
 
-template <class T>
-Status LogQueue::push_record(T record) {
+Status LogQueue::push(Item item, const ItemOptions& options) {
+  GLOAM_TRY_STATUS(status());
+  std::vector<Item> dropped;
+  const PushResult pushed = items_.push(std::move(item), options, &dropped);
   const std::lock_guard lock(mutex_);
-  GLOAM_TRY_STATUS(refuse_locked());
-  items_.push_back(std::move(record));
-  work_.notify_one();
-  return {};
-}
-template Status LogQueue::push_record(McapSchema);
-template Status LogQueue::push_record(McapChannel);
-template Status LogQueue::push_record(McapAttachment);
-template Status LogQueue::push_record(McapMetadata);
-template Status LogQueue::push_record(LogQueueFlush);
-
-Status LogQueue::refuse_locked() const {
-  GLOAM_TRY_STATUS(status_);
-  if (closing_) return Error{ErrorKind::kUsage, "the log is closed", {}, {}};
-  return {};
+  for (Item& oldest : dropped) count_dropped_locked(std::get<LogQueueMessage>(std::move(oldest)));
+  if (status_.ok() && pushed == PushResult::kClosed)
+    return Error{ErrorKind::kUsage, "the log is closed", {}, {}};
+  return status_;
 }
 
-bool LogQueue::is_full_locked(uint64_t more) const {
-  if (waiting_messages_ == 0) return false;
-  return waiting_messages_ >= options_.most_messages || waiting_bytes_ + more > options_.most_bytes;
-}
-
-void LogQueue::drop_oldest_locked() {
-  const auto oldest = std::find_if(items_.begin(), items_.end(), [](const Item& item) {
-    return std::holds_alternative<LogQueueMessage>(item);
-  });
-  auto& message = std::get<LogQueueMessage>(*oldest);
+void LogQueue::count_dropped_locked(LogQueueMessage message) {
   ++dropped_[message.channel];
-  --waiting_messages_;
-  waiting_bytes_ -= message.data.size();
   recycle_locked(std::move(message.data));
-  items_.erase(oldest);
 }
 
 void LogQueue::recycle_locked(std::vector<uint8_t> buffer) {
@@ -107,53 +77,35 @@ uint64_t LogQueue::dropped() const {
 
 Status LogQueue::close() {
   const std::lock_guard closing(close_mutex_);
-  {
-    const std::lock_guard lock(mutex_);
-    closing_ = true;
-    work_.notify_all();
-    room_.notify_all();
-  }
+  items_.close();
   if (thread_.joinable()) thread_.join();
   return status();
 }
 
 void LogQueue::run() {
-  auto next_flush = std::chrono::steady_clock::now() + options_.flush_interval;
-  std::unique_lock lock(mutex_);
-  while (true) {
-    work_.wait_until(lock, next_flush, [&] { return closing_ || !items_.empty(); });
-    if (items_.empty() && closing_) break;
-    std::optional<Item> item;
-    if (!items_.empty()) {
-      item = std::move(items_.front());
-      items_.pop_front();
-      if (const auto* message = std::get_if<LogQueueMessage>(&*item)) {
-        --waiting_messages_;
-        waiting_bytes_ -= message->data.size();
-        room_.notify_all();
-      }
-    }
-    const bool broken = !status_;
-    lock.unlock();
-    Status written;
-    if (item && !broken) written = write(*item);
+  auto next_flush = std::chrono::steady_clock::now() + flush_interval_;
+  while (!items_.has_ended()) {
+    std::optional<Item> item = items_.pop_until(next_flush);
+    Status written = status();
+    const bool was_broken = !written;
+    if (item && !was_broken) written = write(*item);
     if (const auto now = std::chrono::steady_clock::now(); now >= next_flush) {
-      if (written.ok() && !broken) written = writer_->flush();
-      next_flush = now + options_.flush_interval;
+      if (written.ok()) written = writer_->flush();
+      next_flush = now + flush_interval_;
     }
-    lock.lock();
-    if (!written && status_.ok()) status_ = written;
-    if (!written) room_.notify_all();
-    if (auto* message = item ? std::get_if<LogQueueMessage>(&*item) : nullptr) {
-      if (broken || !written) ++dropped_[message->channel];
+    const std::lock_guard lock(mutex_);
+    if (!was_broken) status_ = written;
+    auto* const message = item ? std::get_if<LogQueueMessage>(&*item) : nullptr;
+    if (message == nullptr) continue;
+    if (written.ok())
       recycle_locked(std::move(message->data));
-    }
+    else
+      count_dropped_locked(std::move(*message));
   }
-  const bool broken = !writer_->status();
-  lock.unlock();
-  Status finished = broken ? Status() : writer_->finish();
-  lock.lock();
-  if (!finished && status_.ok()) status_ = std::move(finished);
+  if (!writer_->status()) return;
+  Status finished = writer_->finish();
+  const std::lock_guard lock(mutex_);
+  if (status_.ok()) status_ = std::move(finished);
 }
 
 Status LogQueue::write(const Item& item) {

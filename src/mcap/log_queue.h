@@ -4,9 +4,7 @@
 // dropped and counted, so a slow disk never holds up physics.
 
 #include <chrono>
-#include <condition_variable>
 #include <cstdint>
-#include <deque>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -14,16 +12,15 @@
 #include <variant>
 #include <vector>
 
+#include "base/threads/bounded_queue.h"
 #include "gloam/result.h"
 #include "mcap/mcap_records.h"
 #include "mcap/mcap_writer.h"
 
 namespace gloam {
 
-enum class LogQueuePolicy : uint8_t { kWait, kDropOldest };
-
 struct LogQueueOptions {
-  LogQueuePolicy policy = LogQueuePolicy::kWait;
+  Overflow overflow = Overflow::kWait;
   uint64_t most_bytes = uint64_t{64} << 20;        ///< of messages that wait
   size_t most_messages = 16384;                    ///< that wait
   std::chrono::milliseconds flush_interval{1000};  ///< wall time; a killed process loses that much
@@ -55,11 +52,11 @@ class LogQueue {
   /// taken when the queue is empty.
   Status push(LogQueueMessage message);
   /// These are never dropped, keep their order with messages, and wait for no room.
-  Status push(McapSchema schema) { return push_record(std::move(schema)); }
-  Status push(McapChannel channel) { return push_record(std::move(channel)); }
-  Status push(McapAttachment attachment) { return push_record(std::move(attachment)); }
-  Status push(McapMetadata metadata) { return push_record(std::move(metadata)); }
-  Status push(LogQueueFlush flush) { return push_record(flush); }
+  Status push(McapSchema schema) { return push(std::move(schema), kRecord); }
+  Status push(McapChannel channel) { return push(std::move(channel), kRecord); }
+  Status push(McapAttachment attachment) { return push(std::move(attachment), kRecord); }
+  Status push(McapMetadata metadata) { return push(std::move(metadata), kRecord); }
+  Status push(LogQueueFlush flush) { return push(flush, kRecord); }
 
   /// First error of the writer.
   Status status() const;
@@ -73,26 +70,21 @@ class LogQueue {
   using Item = std::variant<LogQueueMessage, McapSchema, McapChannel, McapAttachment, McapMetadata,
                             LogQueueFlush>;
 
-  template <class T>
-  Status push_record(T record);
-  Status refuse_locked() const;
-  bool is_full_locked(uint64_t more) const;
-  void drop_oldest_locked();
+  static constexpr ItemOptions kRecord = {.is_kept = true};
+
+  Status push(Item item, const ItemOptions& options);
+  void count_dropped_locked(LogQueueMessage message);
   void recycle_locked(std::vector<uint8_t> buffer);
   void run();
   Status write(const Item& item);
 
   std::unique_ptr<McapWriter> writer_;
-  const LogQueueOptions options_;
-  mutable std::mutex mutex_;
-  std::condition_variable work_, room_;  // for the writer's thread; for producers
-  std::deque<Item> items_;
-  size_t waiting_messages_ = 0;
-  uint64_t waiting_bytes_ = 0;
+  const std::chrono::milliseconds flush_interval_;
+  BoundedQueue<Item> items_;
+  mutable std::mutex mutex_;                   // guards the next three
   std::vector<std::vector<uint8_t>> buffers_;  // to use again
   std::map<uint16_t, uint64_t> dropped_;
   Status status_;
-  bool closing_ = false;
   std::mutex close_mutex_;
   std::thread thread_;
 };

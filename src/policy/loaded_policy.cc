@@ -1,4 +1,4 @@
-// gloam/joints/policy.h, without running simulations: runtime/policy_state.cc.
+// gloam/joints/policy.h, without running simulations: runtime/live/policy_state.cc.
 
 #include <fmt/format.h>
 

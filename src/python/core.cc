@@ -9,8 +9,6 @@
 namespace gloam::python {
 namespace {
 
-constexpr std::chrono::milliseconds kSignalPollPeriod{50};  // after which a signal is seen
-
 const char* class_of(ErrorKind kind) {
   switch (kind) {
     case ErrorKind::kInput:

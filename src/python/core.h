@@ -46,6 +46,8 @@ T take(Result<T> result) {
   return std::move(result).value();
 }
 
+/// Time after which a thread that waits sees a signal.
+constexpr std::chrono::milliseconds kSignalPollPeriod{50};
 /// Time in which callbacks and hooks have to return when their stream or simulation is closed.
 constexpr std::chrono::seconds kCallbackTimeout{5};
 /// Waits until `is_done` with the interpreter free meanwhile. Whether it was. Ctrl-C is raised.
@@ -197,6 +199,7 @@ PyType_Slot* kept_slots() {
 // One function for each part of the module.
 void bind_scene(nb::module_& m);
 void bind_world(nb::module_& m);
+void bind_snapshots(nb::module_& m);
 void bind_simulation(nb::module_& m);
 void bind_streams(nb::module_& m);
 void bind_frames(nb::module_& m);

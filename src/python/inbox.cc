@@ -1,5 +1,7 @@
 #include "inbox.h"
 
+#include <algorithm>
+
 namespace gloam::python {
 
 void Inbox::close() {
@@ -50,11 +52,7 @@ Stream& Inbox::stream() {
 
 void Inbox::put(Waiting message) {
   if (!has_callback_) {
-    const std::lock_guard lock(mutex_);
-    waiting_.push_back(std::move(message));
-    if (static_cast<int>(waiting_.size()) <= capacity_) return;
-    waiting_.pop_front();
-    ++lost_;
+    waiting_.push(std::move(message));
     return;
   }
   const nb::gil_scoped_acquire acquired;
@@ -72,17 +70,35 @@ void Inbox::put(Waiting message) {
   is_in_callback_ = false;
 }
 
-std::optional<Waiting> Inbox::pop() {
-  const std::lock_guard lock(mutex_);
-  if (waiting_.empty()) return {};
-  std::optional<Waiting> first = std::move(waiting_.front());
-  waiting_.pop_front();
-  return first;
+void Inbox::check_kept() const {
+  if (has_callback_)
+    raise("UsageError", "messages of " + name_ + " go to its callback",
+          "open another stream to read them");
 }
 
-void Inbox::clear() {
-  const std::lock_guard lock(mutex_);
-  waiting_.clear();
+std::optional<Waiting> Inbox::wait(std::optional<double> timeout) {
+  using Clock = std::chrono::steady_clock;
+  constexpr double kLongest = 1e9;  // [s], which a clock can add
+  check_kept();
+  if (timeout && !(*timeout >= 0)) raise("UsageError", "timeout must be at least 0 s");
+  const auto end =
+      Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(
+                         std::min(timeout.value_or(kLongest), kLongest)));
+  for (;;) {
+    const auto until = std::min(end, Clock::now() + kSignalPollPeriod);
+    if (auto first = without_gil([&] { return waiting_.pop_until(until); })) return first;
+    check(stream().status());
+    if (PyErr_CheckSignals() != 0) throw nb::python_error();
+    if (Clock::now() >= end) return {};
+  }
+}
+
+void Inbox::flush() {
+  if (is_in_callback_ && callback_thread_.load() == std::this_thread::get_id())
+    raise("UsageError", "a callback cannot wait for its own stream", "read it in another thread");
+  Stream& here = stream();
+  without_gil([&] { here.flush(); });
+  rethrow();
 }
 
 }  // namespace gloam::python

@@ -28,6 +28,7 @@ NB_MODULE(_core, m) {
   bind_world(m);
   bind_frames(m);
   bind_streams(m);
+  bind_snapshots(m);
   bind_simulation(m);
   bind_logs(m);
   bind_runs(m);

@@ -112,7 +112,7 @@ void Run::empty_inboxes() {
 
 void Run::restart_inboxes() {
   const int64_t step = latest().step();
-  for (const auto& inbox : open_inboxes()) inbox->set_next_from(step);
+  for (const auto& inbox : open_inboxes()) inbox->restart(step);
 }
 
 // Numbers that Python wrote between two steps are put back, and the hook gives them to the next
@@ -235,6 +235,11 @@ Snapshot Run::latest() {
   return without_gil([&] { return here.latest(); });
 }
 
+RenderOptions Run::scene_render() {
+  Simulation& here = simulation();
+  return without_gil([&] { return here.world().scene().render; });
+}
+
 void Run::step(int64_t n) {
   if (n < 0) raise("UsageError", "the number of steps must not be negative");
   if (n == 0) return;
@@ -335,6 +340,7 @@ nb::object Run::step_until(Inbox& inbox) {
   if (!simulation_->paused())
     raise("UsageError", "the simulation is running", "pause() it before step_until()");
   Stream& stream = inbox.stream();
+  inbox.check_kept();
   if (stream.complete_at(0) < 0)
     raise("UsageError", "a topic stream has no single next message", "iterate over it");
   const Rational rate = simulation_->step_rate();

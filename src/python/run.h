@@ -41,6 +41,8 @@ class Run {
   /// The present instant. The interpreter is free meanwhile: the thread that steps answers, and may
   /// be in a hook of Python's.
   Snapshot latest();
+  /// The settings of images in the scene of the present World.
+  RenderOptions scene_render();
   /// Ends the simulation and its streams. Raises an Error where a callback or hook does not return
   /// within kCallbackTimeout: its thread and the simulation's memory are then left behind.
   void close();

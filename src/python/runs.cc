@@ -3,9 +3,7 @@
 #include "gloam/run.h"
 
 #include "frames.h"
-#include "gloam/render.h"
 #include "reports.h"
-#include "run.h"
 #include "streams.h"
 
 namespace gloam::python {
@@ -14,7 +12,7 @@ namespace {
 nb::list stills(const World& world, double time, const nb::list& requests, nb::object progress) {
   std::vector<CameraRequest> wanted;
   for (const nb::handle request : requests)
-    wanted.push_back(camera_request(nb::cast<nb::dict>(request)));
+    wanted.push_back(camera_request(nb::cast<nb::dict>(request), world.scene().render));
   auto frames = with_progress(std::move(progress), [&](const ProgressCallback& callback) {
     return render_stills(world, time, wanted, callback);
   });
@@ -23,21 +21,6 @@ nb::list stills(const World& world, double time, const nb::list& requests, nb::o
     list.append(nb::cast(Frame{std::make_shared<CameraFrame>(std::move(frame))}));
   return list;
 }
-
-/// A renderer of one World that Python keeps, for pictures of present instants.
-class Painter {
- public:
-  explicit Painter(const World& world)
-      : renderer_(take(without_gil([&] { return SceneRenderer::create(world); }))) {}
-  Frame paint(Run& run, const nb::dict& options, int64_t index) {
-    const CameraRequest request = camera_request(options);
-    const Snapshot now = run.latest();
-    return {take(without_gil([&] { return renderer_.render({&now, 1}, request, index); }))};
-  }
-
- private:
-  SceneRenderer renderer_;
-};
 
 }  // namespace
 
@@ -94,9 +77,6 @@ void bind_runs(nb::module_& m) {
       nb::arg("world"), nb::arg("options"), nb::arg("progress").none() = nb::none());
   m.def("render_stills", &stills, nb::arg("world"), nb::arg("time"), nb::arg("requests"),
         nb::arg("progress").none() = nb::none());
-  nb::class_<Painter>(m, "Painter")
-      .def(nb::init<const World&>())
-      .def("paint", &Painter::paint, nb::arg("run"), nb::arg("options"), nb::arg("index") = 0);
 }
 
 }  // namespace gloam::python

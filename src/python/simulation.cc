@@ -20,7 +20,7 @@ std::shared_ptr<Run> create(const World& world, uint64_t seed, double timestep,
   options.seed = seed;
   options.timestep = timestep;
   options.speed = speed;
-  options.pace = take(pace_named(pace));
+  options.pace = take(enum_named<Pace>(pace));
   Run::Shared shared{std::move(make_data)};
   if (!shared.make_data.is_none()) options.make_data = data_maker(shared.make_data, shared.mirrors);
   options.keep_waiting = [signal = shared.signal] {
@@ -227,60 +227,6 @@ nb::object actuator_readings(Run& run, Robot robot) {
   return made;
 }
 
-/// The instant's poses, velocities and contacts, solved once for a step.
-class Solver {
- public:
-  const Instant& at(Run& run) {
-    const Snapshot now = run.latest();
-    check(instant_.solve(now));
-    return instant_;
-  }
-
- private:
-  Instant instant_;
-};
-
-nb::list contact_list(const Instant& instant) {
-  nb::list list;
-  const auto three = [](const Vec3& v) { return new_array<double>({v.x, v.y, v.z}, {3}); };
-  for (const ContactState& contact : instant.contacts()) {
-    nb::dict made;
-    made["geoms"] = nb::make_tuple(contact.geoms[0].id, contact.geoms[1].id);
-    made["position"] = three(contact.position);
-    made["normal"] = three(contact.normal);
-    made["distance"] = contact.distance;
-    made["force"] = three(contact.force);
-    made["torque"] = three(contact.torque);
-    list.append(made);
-  }
-  return list;
-}
-
-void bind_solver(nb::module_& m) {
-  nb::class_<Solver>(m, "Solver")
-      .def(nb::init<>())
-      .def("body",
-           [](Solver& solver, Run& run, Body body) {
-             const BodyState state = take(solver.at(run).body(body));
-             const auto three = [](const Vec3& v) {
-               return new_array<double>({v.x, v.y, v.z}, {3});
-             };
-             return nb::make_tuple(pose_tuple(state.X_WB), three(state.velocity),
-                                   three(state.angular_velocity));
-           })
-      .def("force",
-           [](Solver& solver, Run& run, Actuator a) { return take(solver.at(run).force(a)); })
-      .def("contacts", [](Solver& solver, Run& run) { return contact_list(solver.at(run)); })
-      .def(
-          "value",
-          [](Solver& solver, Run& run, const std::string& field, const std::string& element) {
-            std::vector<double> numbers = take(solver.at(run).value(field, element));
-            const size_t n = numbers.size();
-            return new_array<double>(std::move(numbers), {n});
-          },
-          nb::arg("run"), nb::arg("field"), nb::arg("element") = "");
-}
-
 void bind_view(nb::module_& m) {
   nb::class_<ViewServer>(m, "ViewServer")
       .def_prop_ro("url", &ViewServer::url)
@@ -292,11 +238,12 @@ void bind_view(nb::module_& m) {
         ViewOptions options;
         options.port = port;
         options.camera = camera;
-        if (!render.empty()) {
-          Keywords keywords(render);
-          options.render = render_options(keywords);
-          keywords.refuse_others();
-        }
+        Keywords keywords(render);
+        RenderOptions scene = run.scene_render();
+        scene.tier = options.render.tier;  // live, whatever the scene's images are for
+        scene.error.reset();
+        options.render = render_options(keywords, scene);
+        keywords.refuse_others();
         return take(without_gil([&] { return ViewServer::start(run.simulation(), options); }));
       },
       nb::arg("run"), nb::arg("port") = 0, nb::arg("camera") = "free",
@@ -307,7 +254,6 @@ void bind_view(nb::module_& m) {
 
 void bind_simulation(nb::module_& m) {
   bind_memory(m);
-  bind_solver(m);
   nb::class_<Checkpoint>(m, "Checkpoint", "An instant to which a simulation can be restored.")
       .def_prop_ro("step", &Checkpoint::step)
       .def_prop_ro("time", &Checkpoint::time)
@@ -335,7 +281,7 @@ void bind_simulation(nb::module_& m) {
       .def("set_pace",
            [](Run& r, const std::string& pace, double speed) {
              if (!(speed > 0)) raise("UsageError", "speed must be positive");
-             const Pace wanted = take(pace_named(pace));
+             const Pace wanted = take(enum_named<Pace>(pace));
              Simulation& simulation = r.simulation();
              without_gil([&] { simulation.set_pace(wanted, speed); });
            })
@@ -346,6 +292,7 @@ void bind_simulation(nb::module_& m) {
       .def_prop_ro("generation", &Run::generation)
       .def_prop_ro("stats", &stats_dict)
       .def("actuator_readings", &actuator_readings)
+      .def_prop_ro("latest", &Run::latest)
       .def_prop_ro("time", [](Run& r) { return r.latest().time(); })
       .def_prop_ro("step_count", [](Run& r) { return r.latest().step(); })
       .def_prop_ro("hash", [](Run& r) { return r.latest().hash(); })

@@ -35,7 +35,7 @@ std::shared_ptr<Inbox> open(Run& run, std::shared_ptr<Inbox> inbox,
 }
 
 std::shared_ptr<Inbox> open_camera(Run& run, const nb::dict& options, nb::object callback) {
-  const CameraRequest request = camera_request(options);
+  const CameraRequest request = camera_request(options, run.scene_render());
   auto inbox = make_inbox(run, "camera '" + request.camera + "'", std::move(callback));
   const auto take_frame = [raw = inbox.get()](std::shared_ptr<const CameraFrame> frame) {
     const int64_t next = frame->step + 1;
@@ -100,17 +100,30 @@ CameraStream& camera_stream(Inbox& inbox) {
   return *camera;
 }
 
+/// Reads the name of an enum's value. Leaves `value` as it is if the name is not given, None or "".
+/// Raises a UsageError for other names.
+template <NamedEnum Enum, class Value>
+void read_named(Keywords& keywords, const char* key, Value* value) {
+  std::string name;
+  keywords.read(key, &name);
+  if (!name.empty()) *value = take(enum_named<Enum>(name));
+}
+
 }  // namespace
 
-RenderOptions render_options(Keywords& keywords) {
-  RenderOptions render;
-  keywords.read("tier", &render.tier);
-  keywords.read("spp", &render.spp);
-  keywords.read("error", &render.error);
+RenderOptions render_options(Keywords& keywords, const RenderOptions& scene) {
+  RenderOptions render = scene;
+  std::optional<int> spp;
+  std::optional<double> error;
+  read_named<RenderTier>(keywords, "tier", &render.tier);
+  keywords.read("spp", &spp);
+  keywords.read("error", &error);
+  if (error || spp) render.spp = spp;
+  if (error || spp || render.tier_or_default(false) != RenderTier::kPath) render.error = error;
   keywords.read("max_depth", &render.max_depth);
-  keywords.read("device", &render.device);
+  read_named<RenderDevice>(keywords, "device", &render.device);
   keywords.read("denoise", &render.denoise);
-  keywords.read("look", &render.look);
+  read_named<RenderLook>(keywords, "look", &render.look);
   keywords.read("ev100", &render.ev100);
   return render;
 }
@@ -124,10 +137,10 @@ Rational rational(double rate) {
   return {static_cast<int64_t>(rate * 1e6 + 0.5), 1000000};
 }
 
-CameraRequest camera_request(const nb::dict& options) {
+CameraRequest camera_request(const nb::dict& options, const RenderOptions& scene) {
   Keywords keywords(options);
   CameraRequest request;
-  request.render = render_options(keywords);
+  request.render = render_options(keywords, scene);
   keywords.read("camera", &request.camera);
   keywords.read("outputs", &request.outputs);
   keywords.read("width", &request.width);
@@ -149,13 +162,9 @@ void bind_streams(nb::module_& m) {
   nb::class_<Inbox>(m, "Stream", "An open stream of messages.", nb::type_slots(kept_slots<Inbox>()))
       .def("close", &Inbox::close)
       .def_prop_ro("is_open", &Inbox::is_open)
+      .def_prop_ro("restarts", &Inbox::restarts)
       .def_prop_ro("dropped", [](Inbox& inbox) { return inbox.stream().dropped() + inbox.lost(); })
-      .def("flush",
-           [](Inbox& inbox) {
-             Stream& stream = inbox.stream();
-             without_gil([&] { stream.flush(); });
-             inbox.rethrow();
-           })
+      .def("flush", &Inbox::flush)
       .def("pop",
            [](Inbox& inbox) {
              inbox.rethrow();
@@ -163,6 +172,14 @@ void bind_streams(nb::module_& m) {
              const std::optional<Waiting> message = inbox.pop();
              return message ? message->make() : nb::object(nb::none());
            })
+      .def(
+          "wait",
+          [](Inbox& inbox, std::optional<double> timeout) {
+            const std::optional<Waiting> message = inbox.wait(timeout);
+            return message ? message->make() : nb::object(nb::none());
+          },
+          nb::arg("timeout").none() = nb::none(),
+          "The next message of a running simulation; None: not within `timeout` [s of wall time].")
       .def("set_pose",
            [](Inbox& inbox, nb::handle X_WC) { camera_stream(inbox).set_pose(pose(X_WC)); });
   m.def("open_camera", &open_camera, nb::arg("run"), nb::arg("options"),

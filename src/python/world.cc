@@ -56,20 +56,6 @@ nb::dict info_dict(const World& world) {
   return made;
 }
 
-nb::list robot_list(const World& world) {
-  nb::list list;
-  for (const RobotInfo& robot : world.robots()) {
-    nb::dict made;
-    made["name"] = robot.name;
-    made["robot"] = robot.robot;
-    made["root"] = robot.root;
-    made["joints"] = robot.joints;
-    made["actuators"] = robot.actuators;
-    list.append(made);
-  }
-  return list;
-}
-
 nb::list stream_list(const World& world) {
   nb::list list;
   for (const StreamInfo& stream : world.streams()) {
@@ -133,7 +119,9 @@ nb::list topic_list(const std::vector<TopicInfo>& topics) {
     made["is_input"] = topic.is_input;
     made["is_logged"] = topic.is_logged;
     made["is_latched"] = topic.qos.is_latched;
-    made["source"] = topic.source;
+    made["is_large"] = topic.is_large;
+    made["source_kind"] = to_string(topic.source.kind);
+    made["source_name"] = topic.source.name;
     list.append(made);
   }
   return list;
@@ -147,6 +135,12 @@ void bind_world(nb::module_& m) {
   bind_handle<Geom>(m, "GeomHandle");
   bind_handle<Tendon>(m, "TendonHandle");
   bind_handle<Robot>(m, "RobotHandle");
+  nb::class_<RobotInfo>(m, "RobotInfo")
+      .def_ro("name", &RobotInfo::name)
+      .def_ro("robot", &RobotInfo::robot)
+      .def_ro("root", &RobotInfo::root)
+      .def_ro("joints", &RobotInfo::joints)
+      .def_ro("actuators", &RobotInfo::actuators);
   nb::class_<World>(m, "World", "A compiled Scene; it never changes.")
       .def_static(
           "compile",
@@ -165,7 +159,7 @@ void bind_world(nb::module_& m) {
            [](const World& w, const std::string& n) { return take(w.find_sensor(n)); })
       .def("find_robot", [](const World& w, const std::string& n) { return take(w.find_robot(n)); })
       .def("info", &info_dict)
-      .def("robots", &robot_list)
+      .def("robots", &World::robots)
       .def("streams", &stream_list)
       .def("inputs", &input_list)
       .def("live_field",

@@ -48,6 +48,9 @@ class FolderRecorder : public Recorder {
         info_(info),
         outputs_(options.outputs.begin(), options.outputs.end()),
         rows_(kPlottedRows) {}
+  ~FolderRecorder() override {
+    if (metrics_worker_) metrics_worker_->close();
+  }
 
   Status open() {
     GLOAM_TRY_STATUS(check());
@@ -86,7 +89,7 @@ class FolderRecorder : public Recorder {
     GLOAM_TRY_STATUS(open_table("metrics", info_.metric_columns, &metrics_));
     GLOAM_TRY_STATUS(open_table("state", info_.state_columns, &state_));
     GLOAM_TRY_STATUS(open_sensors());
-    metrics_worker_ = std::make_unique<Worker>(kQueuedRows, options_.wait);
+    metrics_worker_ = std::make_unique<Worker>(kQueuedRows, overflow_of(options_));
     return {};
   }
 
@@ -103,7 +106,7 @@ class FolderRecorder : public Recorder {
   void add_metrics(std::span<const double> row) override {
     GLOAM_CHECK(row.size() == info_.metric_columns.size(), "a row has one value per column");
     if (failure_.failed()) return;
-    metrics_worker_->post([this, values = std::vector<double>(row.begin(), row.end())]() mutable {
+    post_row([this, values = std::vector<double>(row.begin(), row.end())]() mutable {
       if (failure_.failed()) return;
       if (metrics_) failure_.report(metrics_->add(values));
       ++metric_rows_;
@@ -118,7 +121,7 @@ class FolderRecorder : public Recorder {
   void add_state(std::span<const double> row) override {
     GLOAM_CHECK(row.size() == info_.state_columns.size(), "a row has one value per column");
     if (failure_.failed() || !state_) return;
-    metrics_worker_->post([this, values = std::vector<double>(row.begin(), row.end())] {
+    post_row([this, values = std::vector<double>(row.begin(), row.end())] {
       if (!failure_.failed()) failure_.report(state_->add(values));
     });
   }
@@ -129,7 +132,7 @@ class FolderRecorder : public Recorder {
     std::vector<double> row = {static_cast<double>(message.index),
                                static_cast<double>(message.step), message.time, message.delivery};
     row.insert(row.end(), message.values.begin(), message.values.end());
-    metrics_worker_->post([this, csv = &file->second, row = std::move(row)] {
+    post_row([this, csv = &file->second, row = std::move(row)] {
       if (!failure_.failed()) failure_.report(csv->add(row));
     });
   }
@@ -255,6 +258,11 @@ class FolderRecorder : public Recorder {
     for (const RecordedSensor& sensor : info_.sensors)
       sensor_file_names_.push_back(sensor_files.take(sensor.name) + ".csv");
     return {};
+  }
+
+  void post_row(Worker::Job job) {
+    const bool is_open = metrics_worker_->post(std::move(job));
+    GLOAM_CHECK(is_open, "a row after the end of the recording");
   }
 
   Status write_text(const char* name, const std::string& text) {

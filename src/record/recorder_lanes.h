@@ -11,10 +11,10 @@
 #include <utility>
 
 #include "base/check.h"
+#include "base/threads/worker.h"
 #include "gloam/result.h"
 #include "record/recorder.h"
 #include "record/run_files.h"
-#include "record/worker.h"
 
 namespace gloam {
 
@@ -52,6 +52,11 @@ class FirstFailure {
   std::optional<Error> error_;
 };
 
+/// A batch run waits for slow disks; otherwise the oldest items are dropped and counted.
+inline Overflow overflow_of(const RecorderOptions& options) {
+  return options.wait ? Overflow::kWait : Overflow::kDropOldest;
+}
+
 /// The files of each camera, or of each LiDAR, and a thread for each that writes them.
 template <class LaneRecorder>
 class Lanes {
@@ -68,10 +73,11 @@ class Lanes {
     const auto lane = lanes_.find(name);
     GLOAM_CHECK(lane != lanes_.end(), "a frame or scan of a sensor that is not recorded");
     if (failure->failed()) return;
-    lane->second->worker.post(
+    const bool is_open = lane->second->worker.post(
         [failure, recorder = &lane->second->recorder, item = std::move(item)] {
           if (!failure->failed()) failure->attempt([&] { return recorder->add(*item); });
         });
+    GLOAM_CHECK(is_open, "a frame or scan after the end of the recording");
   }
   /// Writes all queued items and ends the threads.
   void close() {
@@ -92,7 +98,8 @@ class Lanes {
   struct Lane {
     Lane(LaneRecorder lane_recorder, const RecorderOptions& options)
         : recorder(std::move(lane_recorder)),
-          worker(static_cast<size_t>(options.queue_frames), options.wait) {}
+          worker(static_cast<size_t>(options.queue_frames), overflow_of(options)) {}
+    ~Lane() { worker.close(); }
     LaneRecorder recorder;
     Worker worker;  // after what it uses: it is destroyed, and so ends, first
   };

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "gloam/result.h"
+#include "gloam/scene/render.h"
 #include "instant/pose_frame.h"
 #include "render/film/film.h"
 #include "render/kernel/camera/camera.h"
@@ -36,13 +37,6 @@ struct CameraView {
   float near = 0;                                        ///< [m]
   bool culls_backs = false;                              ///< surfaces seen from behind
   std::shared_ptr<const std::vector<uint8_t>> hidden{};  ///< by instance; null = none
-};
-
-enum class RenderTier : uint8_t {
-  kPath,         ///< unbiased path tracing
-  kDirect,       ///< primary hit, direct light with shadows, one ambient light by facing
-  kInteractive,  ///< direct light, cached indirect light, one specular bounce; filtered over
-                 ///< pictures
 };
 
 /// Memory of one camera's earlier pictures, for the interactive tier. A picture is a function of
@@ -165,11 +159,11 @@ Result<std::unique_ptr<Renderer>> make_cpu_renderer(const RenderDescription& des
 /// Renders on the first NVIDIA card what it has stages for (path and direct tier, exact channels),
 /// the rest on the CPU. Errors: as above; no CUDA in this build, no card.
 Result<std::unique_ptr<Renderer>> make_cuda_renderer(const RenderDescription& description);
-/// On "cpu", "cuda", or with "auto" on a card where this build and this machine have one.
+/// kAuto: on a card where this build and this machine have one.
 Result<std::unique_ptr<Renderer>> make_renderer(const RenderDescription& description,
-                                                const std::string& device);
+                                                RenderDevice device);
 /// Whether make_renderer takes a card for `device`.
-bool renders_on_card(const std::string& device);
+bool renders_on_card(RenderDevice device);
 /// "NVIDIA H200", or why make_cuda_renderer would fail.
 Result<std::string> cuda_device_name();
 

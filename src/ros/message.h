@@ -8,10 +8,12 @@
 //     GLOAM_MESSAGE(Header, stamp, frame_id)
 //   };
 //
-// in a namespace with `kPackage = "std_msgs/msg"`. Types of fields: ROS's primitives as bool,
-// int8_t … uint64_t, float, double, `char` (char), std::byte (byte), std::string, BoundedString;
-// other messages; std::array (T[N]), std::vector (T[]), BoundedVector (T[<=N]), Bytes (uint8[]) and
-// Bools (bool[]) of those.
+// in a namespace with `kPackage = "std_msgs/msg"`. The build generates the structs of the messages
+// in definitions/, as ros/messages/PACKAGE.h (generator/generate_messages.py). Constants are static
+// members, listed again in kConstants; kDefaults lists fields with default values. Types of fields:
+// ROS's primitives as bool, int8_t … uint64_t, float, double, `char` (char), std::byte (byte),
+// std::string, BoundedString; other messages; std::array (T[N]), std::vector (T[]), BoundedVector
+// (T[<=N]), Bytes (uint8[]) and Bools (bool[]) of those.
 
 #include <algorithm>
 #include <array>
@@ -35,22 +37,22 @@
   auto members() const { return std::tie(__VA_ARGS__); }        \
   friend bool operator==(const T&, const T&) = default;
 
-/// Constants of a message under ROS's names: GLOAM_CONSTANTS(uint8, ULTRASOUND = 0, INFRARED = 1).
-#define GLOAM_CONSTANTS(ros_type, ...)                         \
-  enum : int32_t { __VA_ARGS__ };                              \
-  static constexpr std::string_view kConstantType = #ros_type; \
-  static constexpr std::string_view kConstantTexts = #__VA_ARGS__;
-
-/// Defaults that a message's .msg file gives to fields, where they are not zero or empty:
-/// GLOAM_DEFAULTS(w = 1).
-#define GLOAM_DEFAULTS(...) static constexpr std::string_view kDefaultTexts = #__VA_ARGS__;
-
 namespace gloam {
 
 template <class T>
 concept Message = requires {
   T::kNamespace;
   T::kFieldNames;
+};
+
+/// A constant of a message as in its definition: {"uint8", "INFRARED", "1"}.
+struct ConstantText {
+  std::string_view type, name, value;
+};
+
+/// A field's default value as in its message's definition: {"w", "1"}.
+struct DefaultText {
+  std::string_view field, value;
 };
 
 /// string<=N: the encoder checks that there are no more than N characters, the decoder refuses
@@ -150,5 +152,15 @@ constexpr void for_each_field_type(F&& f) {
      ...);
   }(std::make_index_sequence<std::tuple_size_v<Fields>>());
 }
+
+/// A list of messages' types, such as AllMessages in ros/messages/all_messages.h.
+template <Message... T>
+struct MessageList {
+  /// Calls f(std::type_identity<T>()) for each.
+  template <class F>
+  static void for_each(F&& f) {
+    (f(std::type_identity<T>()), ...);
+  }
+};
 
 }  // namespace gloam

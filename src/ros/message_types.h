@@ -25,7 +25,7 @@ const MessageType& message_type() {
   return type;
 }
 
-/// The types of all structs in messages/.
+/// The types of all messages in definitions/, without older versions.
 std::span<const MessageType> message_types();
 
 /// The type named "sensor_msgs/msg/Imu"; nullptr if Gloam does not know it.

@@ -11,6 +11,10 @@
 namespace gloam {
 namespace {
 
+constexpr double kLongestDelay = 86'400;  // [s]
+
+double seconds_of(const auto& time) { return time.sec + 1e-9 * time.nanosec; }
+
 Error bad(std::string message, std::string hint = {}) {
   return {ErrorKind::kInput, std::move(message), {}, std::move(hint)};
 }
@@ -31,20 +35,33 @@ Status check_joint_names(std::span<const std::string> names) {
 Result<JointTrajectory> joint_trajectory_of(const trajectory_msgs::JointTrajectory& message) {
   const size_t joints = message.joint_names.size();
   JointTrajectory trajectory;
-  for (const trajectory_msgs::JointTrajectoryPoint& point : message.points) {
+  for (size_t i = 0; i < message.points.size(); ++i) {
+    const trajectory_msgs::JointTrajectoryPoint& point = message.points[i];
     if (!point.effort.empty() && point.effort.size() != joints)
-      return bad(fmt::format("a point has {} efforts for {} joints", point.effort.size(), joints));
+      return bad(
+          fmt::format("point {} has {} efforts for {} joints", i, point.effort.size(), joints));
     if (!std::ranges::all_of(point.effort, [](double v) { return std::isfinite(v); }))
-      return bad("the efforts of a point are not finite");
-    trajectory.points.push_back({point.time_from_start.sec + 1e-9 * point.time_from_start.nanosec,
-                                 point.positions, point.velocities, point.accelerations});
+      return bad(fmt::format("the efforts of point {} are not finite", i));
+    trajectory.points.push_back({seconds_of(point.time_from_start), point.positions,
+                                 point.velocities, point.accelerations});
   }
-  GLOAM_TRY_STATUS(JointPath::make(trajectory, joints));
+  GLOAM_TRY_STATUS(JointPath::check(trajectory, joints));
   return trajectory;
 }
 
-int64_t start_step(const trajectory_msgs::JointTrajectory& message, double now, double timestep) {
-  const double stamp = message.header.stamp.sec + 1e-9 * message.header.stamp.nanosec;
+Result<int64_t> start_step(const trajectory_msgs::JointTrajectory& message, double now,
+                           double timestep) {
+  const double stamp = seconds_of(message.header.stamp);
+  const double length =
+      message.points.empty() ? 0 : seconds_of(message.points.back().time_from_start);
+  if (stamp != 0 && stamp + length < now)
+    return bad(fmt::format("the trajectory ended at {:g} s, but was received at {:g} s",
+                           stamp + length, now),
+               "use the stamp 0 to start at once");
+  if (stamp > now + kLongestDelay)
+    return bad(fmt::format("the trajectory starts at {:.0f} s, but the simulation is at {:g} s",
+                           stamp, now),
+               "stamps are simulation time: set use_sim_time, or use the stamp 0 to start at once");
   return stamp > now ? std::llround(stamp / timestep) : Command::kNextStep;
 }
 

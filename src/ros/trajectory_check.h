@@ -18,7 +18,9 @@ Status check_joint_names(std::span<const std::string> names);
 /// none nor one for each joint, or not finite.
 Result<JointTrajectory> joint_trajectory_of(const trajectory_msgs::JointTrajectory& message);
 /// The step at which a message's trajectory starts: that of its stamp, or the next one if the stamp
-/// is 0 or past. `now`: simulation time; steps take `timestep` [s].
-int64_t start_step(const trajectory_msgs::JointTrajectory& message, double now, double timestep);
+/// is 0 or past. `now`: simulation time; steps take `timestep` [s]. Errors: it has a stamp and ends
+/// before `now`; it starts more than a day later, because the stamp is of another clock.
+Result<int64_t> start_step(const trajectory_msgs::JointTrajectory& message, double now,
+                           double timestep);
 
 }  // namespace gloam

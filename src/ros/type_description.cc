@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <map>
 
 #include "base/sha256.h"
@@ -74,12 +73,6 @@ std::string message_json(const MessageDescription& message) {
     fields = field_json("structure_needs_at_least_one_member", {.kind = FieldKind::kUint8});
   }
   return fmt::format(R"({{"type_name": "{}", "fields": [{}]}})", message.name, fields);
-}
-
-std::string_view trimmed(std::string_view text) {
-  const size_t first = text.find_first_not_of(' ');
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(' ') + 1 - first);
 }
 
 }  // namespace
@@ -155,25 +148,6 @@ std::string dds_type_name(std::string_view ros_name) {
   const size_t first = ros_name.find('/'), last = ros_name.rfind('/');
   return fmt::format("{}::{}::dds_::{}_", ros_name.substr(0, first),
                      ros_name.substr(first + 1, last - first - 1), ros_name.substr(last + 1));
-}
-
-std::vector<ConstantDescription> parse_constants(std::string_view type, std::string_view list) {
-  std::vector<ConstantDescription> constants;
-  const auto count = static_cast<size_t>(std::ranges::count(list, ',')) + 1;
-  for (size_t i = 0; i < count; ++i) {
-    const std::string_view entry = list_entry(list, i);
-    const size_t equals = entry.find('=');
-    constants.push_back({std::string(type), std::string(trimmed(entry.substr(0, equals))),
-                         std::string(trimmed(entry.substr(equals + 1)))});
-  }
-  return constants;
-}
-
-void add_defaults(std::string_view list, std::vector<FieldDescription>* fields) {
-  for (const ConstantDescription& one : parse_constants({}, list)) {
-    const auto field = std::ranges::find(*fields, one.name, &FieldDescription::name);
-    if (field != fields->end()) field->default_value = one.value;
-  }
 }
 
 }  // namespace gloam

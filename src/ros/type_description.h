@@ -2,6 +2,7 @@
 // Types of messages as data, from a struct of ours (describe<T>) or from a stranger's text
 // (definition_parser.h), and what follows of them: the ros2msg text and the RIHS01 hash (REP 2016).
 
+#include <algorithm>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -101,11 +102,6 @@ constexpr FieldKind field_kind() {
   if constexpr (std::same_as<T, double>) return FieldKind::kFloat64;
 }
 
-/// Constants out of "ULTRASOUND = 0, INFRARED = 1".
-std::vector<ConstantDescription> parse_constants(std::string_view type, std::string_view list);
-/// Gives fields their defaults out of "x = 0, w = 1".
-void add_defaults(std::string_view list, std::vector<FieldDescription>* fields);
-
 template <class F>
 FieldDescription describe_field(std::string_view name) {
   using Traits = FieldTraits<F>;
@@ -130,10 +126,16 @@ void add_description(TypeDescription* type) {
   for_each_field_type<T>([&]<class F>(std::type_identity<F>, std::string_view name) {
     message.fields.push_back(describe_field<F>(name));
   });
-  if constexpr (requires { T::kConstantTexts; }) {
-    message.constants = parse_constants(T::kConstantType, T::kConstantTexts);
+  if constexpr (requires { T::kConstants; }) {
+    for (const ConstantText& one : T::kConstants)
+      message.constants.push_back(
+          {std::string(one.type), std::string(one.name), std::string(one.value)});
   }
-  if constexpr (requires { T::kDefaultTexts; }) add_defaults(T::kDefaultTexts, &message.fields);
+  if constexpr (requires { T::kDefaults; }) {
+    for (const DefaultText& one : T::kDefaults)
+      std::ranges::find(message.fields, one.field, &FieldDescription::name)->default_value =
+          one.value;
+  }
   type->messages.push_back(std::move(message));
   for_each_field_type<T>([&]<class F>(std::type_identity<F>, std::string_view) {
     using Element = typename FieldTraits<F>::Element;

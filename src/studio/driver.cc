@@ -68,13 +68,13 @@ bool make_preview(const World& world, CameraRequest* request) {
   const auto [width, height] = size_of(*request, world);
   const int64_t pixels = int64_t{width} * height;
   const bool is_small = pixels > 0 && pixels <= kSmallWidth * kSmallHeight;
-  const bool fills_cache = request->render.tier == "interactive";
+  const bool fills_cache = request->render.tier == RenderTier::kInteractive;
   if ((is_small && !fills_cache) || pixels > kMostPixels) return false;
   if (!is_small) {
     request->width = pixels > 0 ? std::max(width / kFraction, 1) : kSmallWidth;
     request->height = pixels > 0 ? std::max(height / kFraction, 1) : kSmallHeight;
   }
-  if (fills_cache) request->render.tier = "path";
+  if (fills_cache) request->render.tier = RenderTier::kPath;
   request->render.error.reset();
   request->render.spp = std::min(request->render.samples(), kPreviewSamples);
   return true;

@@ -1,7 +1,10 @@
 #pragma once
 // The page's files (studio/web/), built into the library.
 
+#include <string>
 #include <string_view>
+
+#include "web/websocket_server.h"
 
 namespace gloam::studio {
 
@@ -13,5 +16,8 @@ struct PageFile {
 
 /// Null when there is no such file.
 const PageFile* find_page_file(std::string_view path);
+
+/// The page's files, and its WebSocket at /ws, for clients that have the token.
+web::Answer answer_page_request(const web::RequestFacts& request, const std::string& token);
 
 }  // namespace gloam::studio

@@ -2,6 +2,7 @@
 
 #include <bit>
 #include <cstring>
+#include <string_view>
 
 #include "gloam/view.h"
 
@@ -9,21 +10,22 @@ namespace gloam::studio {
 namespace {
 
 template <class T>
-void append(std::string& bytes, T value) {
+void append(std::vector<uint8_t>& bytes, T value) {
   static_assert(std::endian::native == std::endian::little, "the header is little-endian");
-  char raw[sizeof value];
-  std::memcpy(raw, &value, sizeof value);
-  bytes.append(raw, sizeof value);
+  const size_t end = bytes.size();
+  bytes.resize(end + sizeof value);
+  std::memcpy(&bytes[end], &value, sizeof value);
 }
 
 }  // namespace
 
-Result<std::string> encode_picture(const CameraFrame& frame, uint64_t sequence, uint32_t camera) {
+Result<std::vector<uint8_t>> encode_picture(const CameraFrame& frame, uint64_t sequence,
+                                            uint32_t camera) {
   const Intrinsics& k = frame.intrinsics;
   GLOAM_TRY(const std::vector<uint8_t> jpeg, encode_jpeg(k.width, k.height, frame.rgb));
-  std::string packet;
+  std::vector<uint8_t> packet;
   packet.reserve(kPictureHeaderSize + jpeg.size());
-  packet.append("GLV1", 4);
+  for (const char letter : std::string_view("GLV1")) append(packet, letter);
   append<uint32_t>(packet, kPictureHeaderSize);
   append<uint64_t>(packet, sequence);
   append<int64_t>(packet, frame.index);
@@ -39,7 +41,7 @@ Result<std::string> encode_picture(const CameraFrame& frame, uint64_t sequence, 
     append(packet, value);
   append<uint32_t>(packet, static_cast<uint32_t>(k.lens));
   for (const double value : k.distortion) append<float>(packet, static_cast<float>(value));
-  packet.append(jpeg.begin(), jpeg.end());
+  packet.insert(packet.end(), jpeg.begin(), jpeg.end());
   return packet;
 }
 

@@ -15,57 +15,41 @@ void Publisher::start() {
 }
 
 void Publisher::offer(std::shared_ptr<const CameraFrame> frame) {
-  {
-    const std::lock_guard lock(mutex_);
-    newest_ = std::move(frame);
-    ++sequence_;
-  }
-  wake_.notify_one();
+  const std::lock_guard lock(mutex_);
+  newest_ = {std::move(frame), newest_.sequence + 1};
+  waiting_.push(newest_);
 }
 
 std::shared_ptr<const CameraFrame> Publisher::newest() const {
   const std::lock_guard lock(mutex_);
-  return newest_;
+  return newest_.frame;
 }
 
 uint64_t Publisher::sequence() const {
   const std::lock_guard lock(mutex_);
-  return sequence_;
+  return newest_.sequence;
 }
 
 void Publisher::forget() {
   const std::lock_guard lock(mutex_);
-  newest_.reset();
-  encoded_ = sequence_;
+  newest_.frame.reset();
+  waiting_.take_all();
 }
 
 void Publisher::stop() {
-  {
-    const std::lock_guard lock(mutex_);
-    stopping_ = true;
-  }
-  wake_.notify_one();
+  waiting_.close();
+  waiting_.take_all();
   if (thread_.joinable()) thread_.join();
 }
 
 void Publisher::run() {
   auto next_beat = Clock::now();
-  std::unique_lock lock(mutex_);
-  while (!stopping_) {
-    wake_.wait_until(lock, next_beat, [this] { return stopping_ || encoded_ != sequence_; });
-    if (stopping_) return;
-    if (encoded_ != sequence_) {
-      const auto frame = newest_;
-      const uint64_t sequence = encoded_ = sequence_;
-      lock.unlock();
-      outputs_.picture(*frame, sequence);
-      lock.lock();
-    }
+  while (!waiting_.has_ended()) {
+    if (const auto offer = waiting_.pop_until(next_beat))
+      outputs_.picture(*offer->frame, offer->sequence);
     if (const auto now = Clock::now(); now >= next_beat) {
       next_beat = now + std::chrono::milliseconds(100);
-      lock.unlock();
       outputs_.beat();
-      lock.lock();
     }
   }
 }

@@ -2,7 +2,6 @@
 // Turns the newest frame into bytes on a thread of its own and keeps a beat for the state messages,
 // so that neither the renderer nor the network waits for either.
 
-#include <condition_variable>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -10,6 +9,7 @@
 #include <string>
 #include <thread>
 
+#include "base/threads/bounded_queue.h"
 #include "gloam/camera.h"
 
 namespace gloam::studio {
@@ -36,15 +36,16 @@ class Publisher {
   void stop();
 
  private:
+  struct Offer {
+    std::shared_ptr<const CameraFrame> frame;
+    uint64_t sequence = 0;
+  };
   void run();
 
   Outputs outputs_;
+  BoundedQueue<Offer> waiting_{{.items = 1}, Overflow::kDropOldest};
   mutable std::mutex mutex_;
-  std::condition_variable wake_;
-  std::shared_ptr<const CameraFrame> newest_;
-  uint64_t sequence_ = 0;  // of newest_
-  uint64_t encoded_ = 0;   // sequence of the last one encoded
-  bool stopping_ = false;
+  Offer newest_;
   std::thread thread_;
 };
 

@@ -1,16 +1,20 @@
 #include <algorithm>
 #include <atomic>
-#include <cmath>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "gloam/log_player.h"
 #include "gloam/view.h"
 #include "studio/driver.h"
 #include "studio/messages.h"
+#include "studio/page.h"
 #include "studio/picture.h"
 #include "studio/publisher.h"
-#include "studio/web_server.h"
-#include "web/access.h"
+#include "web/websocket_server.h"
 
 namespace gloam {
 namespace {
@@ -38,13 +42,28 @@ Status check(const ViewOptions& options) {
   return {};
 }
 
+/// Slots of a client's outbox.
+enum OutboxSlot : size_t { kStateSlot, kPictureSlot };
+
+web::ServerOptions server_options(const ViewOptions& options) {
+  return {.host = options.host,
+          .port = options.port,
+          .methods = "GET, HEAD",
+          .max_clients = options.max_clients,
+          .outbox = {.kept_bytes = size_t{64} << 10, .slots = {0, kPicturesInFlight}},
+          .message_bytes = size_t{64} << 10,
+          .accepts_binary = false};
+}
+
+web::Frame text_frame(std::string text) { return {std::move(text), nullptr, true}; }
+
 }  // namespace
 
 /// Puts the parts together and knows who is in control.
 ///
-///     renderer → Publisher (JPEG, state) → WebServer → clients
-///     clients → WebServer → here (who may) → Driver → Simulation
-class ViewServer::Impl : public WebEvents {
+///     renderer → Publisher (JPEG, state) → clients' outboxes → WebSocketServer
+///     clients → WebSocketServer → here (access) → Driver → Simulation
+class ViewServer::Impl : public web::ServerEvents {
  public:
   Impl(Simulation& simulation, const ViewOptions& options, const std::string& token)
       : simulation_(simulation),
@@ -54,8 +73,8 @@ class ViewServer::Impl : public WebEvents {
                                       uint64_t sequence) { send_picture(frame, sequence); },
                     .beat = [this] { send_state(); }}),
         driver_(simulation, options, publisher_,
-                [this](int64_t client, std::string text) { web_.send(client, std::move(text)); }),
-        web_({options.host, options.port, options.max_clients, token}, *this) {}
+                [this](int64_t client, std::string text) { send(client, std::move(text)); }),
+        web_(server_options(options), *this) {}
   ~Impl() override { stop(); }
 
   Status start() {
@@ -81,33 +100,50 @@ class ViewServer::Impl : public WebEvents {
   }
   int port() const { return web_.port(); }
 
-  void on_open(int64_t client) override {
-    driver_.set_clients(++clients_);
-    if (controller_ == 0) controller_ = client;
-    web_.send(client, hello_message(client, driver_.cameras(), simulation_.step_rate().value(),
-                                    options_.player != nullptr ? options_.player->end() : 0));
+  web::Answer answer(const web::RequestFacts& request) override {
+    return answer_page_request(request, token_);
   }
 
-  void on_close(int64_t client) override {
-    driver_.set_clients(--clients_);
-    if (controller_ == client) give_up_control();
+  void on_open(const web::ClientPtr& client) override {
+    if (controller_ == 0) controller_ = client->id;
+    client->outbox.send(
+        text_frame(hello_message(client->id, driver_.cameras(), simulation_.step_rate().value(),
+                                 options_.player != nullptr ? options_.player->end() : 0)));
+    {
+      const std::lock_guard lock(clients_mutex_);
+      clients_[client->id] = client;
+      if (picture_ != nullptr) client->outbox.replace(kPictureSlot, {"", picture_});
+    }
+    driver_.set_clients(client_count());
   }
 
-  void on_text(int64_t client, std::string_view text) override {
+  void on_close(const web::ClientPtr& client) override {
+    {
+      const std::lock_guard lock(clients_mutex_);
+      clients_.erase(client->id);
+    }
+    driver_.set_clients(client_count());
+    if (controller_ == client->id) give_up_control();
+  }
+
+  void on_text(const web::ClientPtr& client, std::string_view text) override {
+    const auto notify = [&](std::string_view notice) {
+      client->outbox.send(text_frame(notice_message(notice)));
+    };
     const auto message = parse_message(text);
-    if (!message.ok()) return web_.send(client, notice_message(message.error().message));
-    if (std::holds_alternative<SeenMessage>(*message)) return web_.picture_seen(client);
+    if (!message.ok()) return notify(message.error().message);
+    if (std::holds_alternative<SeenMessage>(*message))
+      return client->outbox.acknowledge(kPictureSlot);
     if (std::holds_alternative<ClaimMessage>(*message)) {
-      if (controller_ == client) return;
+      if (controller_ == client->id) return;
       give_up_control();
-      controller_ = client;
+      controller_ = client->id;
       return;
     }
-    if (controller_ != client)
-      return web_.send(client, notice_message("You are watching. Take control first."));
+    if (controller_ != client->id) return notify("You are watching. Take control first.");
     if (std::holds_alternative<ReleaseMessage>(*message)) return give_up_control();
-    if (!driver_.post(client, *message))
-      web_.send(client, notice_message("The simulation is busy; the request was not executed."));
+    if (!driver_.post(client->id, *message))
+      notify("The simulation is busy; the request was not executed.");
   }
 
  private:
@@ -116,56 +152,67 @@ class ViewServer::Impl : public WebEvents {
     controller_ = 0;
   }
 
+  int client_count() const {
+    const std::lock_guard lock(clients_mutex_);
+    return static_cast<int>(clients_.size());
+  }
+
+  void send(int64_t client, std::string text) {
+    const std::lock_guard lock(clients_mutex_);
+    const auto found = clients_.find(client);
+    if (found != clients_.end()) found->second->outbox.send(text_frame(std::move(text)));
+  }
+
   void send_picture(const CameraFrame& frame, uint64_t sequence) {
     // One image waits for the first client: the next one may take seconds.
-    if (clients_ == 0 && has_picture_) return;
+    if (has_picture_ && client_count() == 0) return;
     has_picture_ = true;
     const auto& cameras = driver_.cameras();
     const auto row = std::find(cameras.begin(), cameras.end(), frame.camera) - cameras.begin();
     auto packet = encode_picture(frame, sequence, static_cast<uint32_t>(row));
-    std::string error = packet.ok() ? "" : packet.error().to_string();
-    if (packet.ok())
-      web_.send_picture(std::make_shared<const std::string>(std::move(packet).value()));
-    const std::lock_guard lock(error_mutex_);
-    picture_error_ = std::move(error);
+    const std::lock_guard lock(clients_mutex_);
+    picture_error_ = packet.ok() ? "" : packet.error().to_string();
+    if (!packet.ok()) return;
+    picture_ = std::make_shared<const std::vector<uint8_t>>(std::move(packet).value());
+    for (const auto& [id, client] : clients_) client->outbox.replace(kPictureSlot, {"", picture_});
   }
 
   void send_state() {
-    if (clients_ == 0) return;
+    if (client_count() == 0) return;
     const SimulationStats stats = simulation_.stats();
     const Status physics = simulation_.status();
     const Driver::CameraReport camera = driver_.report();
-    std::string error = physics.ok() ? camera.error : physics.error().to_string();
-    if (error.empty()) {
-      const std::lock_guard lock(error_mutex_);
-      error = picture_error_;
-    }
-    web_.send_state(state_message({.step = stats.step,
-                                   .time = stats.time,
-                                   .hash = stats.hash,
-                                   .realtime_factor = stats.realtime_factor,
-                                   .paused = simulation_.paused(),
-                                   .speed = camera.speed,
-                                   .camera = camera.camera,
-                                   .dropped = camera.dropped,
-                                   .warnings = stats.warnings,
-                                   .error = std::move(error),
-                                   .clients = clients_,
-                                   .controller = controller_}));
+    ViewState state = {.step = stats.step,
+                       .time = stats.time,
+                       .hash = stats.hash,
+                       .realtime_factor = stats.realtime_factor,
+                       .paused = simulation_.paused(),
+                       .speed = camera.speed,
+                       .camera = camera.camera,
+                       .dropped = camera.dropped,
+                       .warnings = stats.warnings,
+                       .error = physics.ok() ? camera.error : physics.error().to_string(),
+                       .controller = controller_};
+    const std::lock_guard lock(clients_mutex_);
+    if (state.error.empty()) state.error = picture_error_;
+    state.clients = static_cast<int>(clients_.size());
+    const web::Frame frame = text_frame(state_message(state));
+    for (const auto& [id, client] : clients_) client->outbox.replace(kStateSlot, frame);
   }
 
   Simulation& simulation_;
   const ViewOptions options_;
   const std::string token_;
-  // Written on the network thread, read by the publisher's.
-  std::atomic<int> clients_ = 0;
-  std::atomic<int64_t> controller_ = 0;
-  std::mutex error_mutex_, stop_mutex_;
+  std::atomic<int64_t> controller_ = 0;  // written on the network thread, read by the publisher's
+  mutable std::mutex clients_mutex_;     // guards these three
+  std::map<int64_t, web::ClientPtr> clients_;
+  std::shared_ptr<const std::vector<uint8_t>> picture_;  // the newest, for clients that come later
   std::string picture_error_;
+  std::mutex stop_mutex_;
   bool has_picture_ = false;  // the publisher's thread only
   Publisher publisher_;
   Driver driver_;
-  WebServer web_;
+  web::WebSocketServer web_;
 };
 
 ViewServer::ViewServer(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}

@@ -75,7 +75,7 @@ InstantEncoder actuator_states(int robot, std::string prefix) {
 
 }  // namespace
 
-void add_actuator_topics(const TopicSource& world, TopicTable* table) {
+void add_actuator_topics(const TopicWorld& world, TopicTable* table) {
   for (size_t i = 0; i < world->robots.size(); ++i) {
     const RobotInstance& robot = world->robots[i];
     if (robot.options.actuator.empty()) continue;
@@ -86,7 +86,7 @@ void add_actuator_topics(const TopicSource& world, TopicTable* table) {
                          .type = std::move(type),
                          .frame_id = root,
                          .rate = rate,
-                         .source = "robot " + robot.name},
+                         .source = {TopicSource::Kind::kRobot, robot.name}},
                         {},
                         {},
                         std::move(encode)});

@@ -20,7 +20,7 @@ namespace {
 constexpr Rational kAirRate = {10, 1};  // [Hz]
 constexpr double kStandardHeight = 10;  // height of winds in meteorology (WMO-No. 8) [m]
 
-InstantEncoder weather(const TopicSource& world) {
+InstantEncoder weather(const TopicWorld& world) {
   return [wind = Wind(world->wind), mean = world->wind.speed,
           options = world->scene.weather.value_or(WeatherOptions{})](
              const TopicInfo& topic, TopicInstant& at, MessageBytes* out) {
@@ -85,8 +85,8 @@ InstantEncoder gas_numbers(size_t row) {
 
 }  // namespace
 
-void add_air_topics(const TopicSource& world, TopicTable* table) {
-  const auto add = [table](std::string name, std::string type, std::string source,
+void add_air_topics(const TopicWorld& world, TopicTable* table) {
+  const auto add = [table](std::string name, std::string type, TopicSource source,
                            InstantEncoder encode) {
     table->push_back({{.name = std::move(name),
                        .type = std::move(type),
@@ -98,12 +98,12 @@ void add_air_topics(const TopicSource& world, TopicTable* table) {
                       std::move(encode)});
   };
   if (world->scene.weather)
-    add("/weather", type_name<gloam_msgs::Weather>(), "weather", weather(world));
+    add("/weather", type_name<gloam_msgs::Weather>(), {.name = "weather"}, weather(world));
   for (size_t row = 0; row < world->gases.gases.size(); ++row) {
     std::string name = world->gases.gases[row].name;
     if (name.empty()) name = fmt::format("gas_{}", row);
-    add("/" + topic_token(name) + "/gas", type_name<gloam_msgs::Gas>(), "gas " + name,
-        gas_numbers(row));
+    add("/" + topic_token(name) + "/gas", type_name<gloam_msgs::Gas>(),
+        {TopicSource::Kind::kGas, name}, gas_numbers(row));
   }
 }
 

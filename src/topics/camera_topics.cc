@@ -9,7 +9,7 @@
 #include "ros/message_types.h"
 #include "ros/messages/event_camera_msgs.h"
 #include "ros/messages/foxglove_msgs.h"
-#include "ros/messages/sensor_images.h"
+#include "ros/messages/sensor_msgs.h"
 #include "topics/ros_values.h"
 #include "topics/topic_table.h"
 #include "topics/topic_video.h"
@@ -169,6 +169,7 @@ struct CameraTopicKind {
   const char* channel;  ///< of CameraRequest::outputs that it needs
   std::string (*type)();
   bool is_logged;
+  bool is_large;  ///< as in TopicInfo
   TopicCode code;
   TopicQos qos = kSensorQos;
 };
@@ -178,37 +179,38 @@ const std::vector<CameraTopicKind>& camera_topic_kinds() {
   using Info = const TopicInfo&;
   const auto image = type_name<sensor_msgs::Image>;
   static const std::vector<CameraTopicKind> kinds = {
-      {"image_raw", "rgb", image, false, encode_rgb},
-      {"image_raw/compressed", "rgb", type_name<sensor_msgs::CompressedImage>, true,
+      {"image_raw", "rgb", image, false, true, encode_rgb},
+      {"image_raw/compressed", "rgb", type_name<sensor_msgs::CompressedImage>, true, false,
        encode_rgb_jpeg},
       // A picture that is lost on the way spoils those after it: reliable.
-      {"image_raw/h264", "rgb", type_name<foxglove_msgs::CompressedVideo>, false,
+      {"image_raw/h264", "rgb", type_name<foxglove_msgs::CompressedVideo>, false, false,
        FrameEncoderMaker(h264_encoder), TopicQos{}},
-      {"camera_info", "rgb", type_name<sensor_msgs::CameraInfo>, true, info_encoder(0)},
-      {"depth/image_rect_raw", "depth", image, false,
+      {"camera_info", "rgb", type_name<sensor_msgs::CameraInfo>, true, false, info_encoder(0)},
+      {"depth/image_rect_raw", "depth", image, false, true,
        [](Info t, Frame f, MessageBytes* out) { return encode_depth(t, f.depth, f, out); }},
-      {"depth/image_rect_mm", "depth", image, false,
+      {"depth/image_rect_mm", "depth", image, false, true,
        [](Info t, Frame f, MessageBytes* out) { return encode_depth_mm(t, f.depth, f, out); }},
-      {"depth/camera_info", "depth", type_name<sensor_msgs::CameraInfo>, false, info_encoder(0)},
-      {"sensor_depth/image_rect_raw", "sensor_depth", image, false,
+      {"depth/camera_info", "depth", type_name<sensor_msgs::CameraInfo>, false, false,
+       info_encoder(0)},
+      {"sensor_depth/image_rect_raw", "sensor_depth", image, false, true,
        [](Info t, Frame f, MessageBytes* out) { return encode_depth(t, f.sensor_depth, f, out); }},
-      {"sensor_depth/image_rect_mm", "sensor_depth", image, true,
+      {"sensor_depth/image_rect_mm", "sensor_depth", image, true, true,
        [](Info t, Frame f, MessageBytes* out) {
          return encode_depth_mm(t, f.sensor_depth, f, out);
        }},
-      {"segmentation/instance", "segmentation", image, false,
+      {"segmentation/instance", "segmentation", image, false, true,
        [](Info t, Frame f, MessageBytes* out) { return encode_ids(t, f.instance, f, out); }},
-      {"segmentation/semantic", "segmentation", image, false,
+      {"segmentation/semantic", "segmentation", image, false, true,
        [](Info t, Frame f, MessageBytes* out) { return encode_ids(t, f.semantic, f, out); }},
-      {"thermal/image_raw", "thermal", image, true, encode_thermal},
-      {"events", "events", type_name<event_camera_msgs::EventPacket>, true, encode_events},
+      {"thermal/image_raw", "thermal", image, true, true, encode_thermal},
+      {"events", "events", type_name<event_camera_msgs::EventPacket>, true, true, encode_events},
   };
   return kinds;
 }
 
 }  // namespace
 
-void add_camera_topics(const TopicSource& world, TopicTable* table) {
+void add_camera_topics(const TopicWorld& world, TopicTable* table) {
   for (const StreamInfo& stream : list_streams(*world)) {
     if (stream.kind != StreamKind::kCamera) continue;
     const double baseline = stereo_baseline(*world, stream.name);
@@ -221,7 +223,8 @@ void add_camera_topics(const TopicSource& world, TopicTable* table) {
                     .rate = stream.rate,
                     .qos = kind.qos,
                     .is_logged = kind.is_logged,
-                    .source = "camera " + stream.name};
+                    .source = {TopicSource::Kind::kCamera, stream.name},
+                    .is_large = kind.is_large};
       topic.streams = {stream.name};
       topic.channel = kind.channel;
       topic.code = kind.code;

@@ -33,8 +33,7 @@ DiagnosticStatus status_of(const char* name, std::string trouble) {
   DiagnosticStatus status;
   status.name = name;
   status.hardware_id = "gloam";
-  status.level =
-      std::byte{trouble.empty() ? uint8_t{DiagnosticStatus::OK} : uint8_t{DiagnosticStatus::WARN}};
+  status.level = trouble.empty() ? DiagnosticStatus::OK : DiagnosticStatus::WARN;
   status.message = trouble.empty() ? "OK" : std::move(trouble);
   return status;
 }
@@ -96,12 +95,12 @@ Status encode_performance(const TopicInfo& topic, TopicInstant& at, MessageBytes
 
 }  // namespace
 
-void add_diagnostic_topics(const TopicSource&, TopicTable* table) {
+void add_diagnostic_topics(const TopicWorld&, TopicTable* table) {
   const auto add = [table](const char* name, const char* source, InstantEncoder encode) {
     table->push_back({{.name = name,
                        .type = type_name<DiagnosticArray>(),
                        .rate = kDiagnosticRate,
-                       .source = source},
+                       .source = {.name = source}},
                       {},
                       {},
                       std::move(encode)});

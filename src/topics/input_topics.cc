@@ -120,16 +120,21 @@ InputDecoder position_commands(JointsByName joints) {
   };
 }
 
+// A trajectory; without points, the named joints stop at once, or all if none is named.
 InputDecoder joint_trajectory(JointsByName joints) {
   return [joints = std::move(joints)](InputBytes bytes, const Snapshot& now,
                                       double timestep) -> Commands {
     GLOAM_TRY(const auto message, decode<trajectory_msgs::JointTrajectory>(bytes));
-    GLOAM_TRY_STATUS(check_joint_names(message.joint_names));
-    GLOAM_TRY(auto trajectory, joint_trajectory_of(message));
+    const bool is_stop = message.points.empty();
+    if (!is_stop || !message.joint_names.empty())
+      GLOAM_TRY_STATUS(check_joint_names(message.joint_names));
     GLOAM_TRY(auto named, joints.find(message.joint_names));
+    if (is_stop)
+      return std::vector{Command{.what = StopTrajectory{joints.handle, std::move(named)}}};
+    GLOAM_TRY(const int64_t start, start_step(message, now.time(), timestep));
+    GLOAM_TRY(auto trajectory, joint_trajectory_of(message));
     return std::vector{
-        Command{start_step(message, now.time(), timestep),
-                FollowTrajectory{joints.handle, std::move(named), std::move(trajectory)}}};
+        Command{start, FollowTrajectory{joints.handle, std::move(named), std::move(trajectory)}}};
   };
 }
 
@@ -212,7 +217,7 @@ std::vector<int> control_places(const mjModel& m, const std::vector<int>& actuat
   return places;
 }
 
-void add_input(std::string name, std::string type, std::string source, InputDecoder decoder,
+void add_input(std::string name, std::string type, TopicSource source, InputDecoder decoder,
                InputEcho echo, TopicTable* table) {
   Topic& topic = table->emplace_back();
   topic.info = {.name = std::move(name),
@@ -225,12 +230,13 @@ void add_input(std::string name, std::string type, std::string source, InputDeco
 
 }  // namespace
 
-void add_input_topics(const TopicSource& world, TopicTable* table) {
+void add_input_topics(const TopicWorld& world, TopicTable* table) {
   const mjModel& m = *world->model;
   for (size_t i = 0; i < world->robots.size(); ++i) {
     const RobotInstance& robot = world->robots[i];
     const Robot handle{static_cast<int>(i), world->serial};
-    const std::string space = "/" + topic_token(robot.name), source = "robot " + robot.name;
+    const std::string space = "/" + topic_token(robot.name);
+    const TopicSource source = {TopicSource::Kind::kRobot, robot.name};
     const std::string& controller = robot.options.controller.type;
     if (controller != "none") {
       add_input(space + "/cmd_vel", type_name<geometry_msgs::Twist>(), source, velocity(handle),
@@ -265,10 +271,11 @@ void add_input_topics(const TopicSource& world, TopicTable* table) {
     if (m.body_mocapid[body] < 0 || find_agent(*world, body) != nullptr) continue;
     const std::string name = body_frame(m, body);
     add_input("/" + topic_token(name) + "/pose", type_name<geometry_msgs::PoseStamped>(),
-              "mocap body " + name, mocap_pose({body, world->serial}), mocap_pose_echo(body),
-              table);
+              {TopicSource::Kind::kBody, name}, mocap_pose({body, world->serial}),
+              mocap_pose_echo(body), table);
   }
-  add_input("/reset", type_name<std_msgs::Empty>(), "simulation", reset, reset_echo(), table);
+  add_input("/reset", type_name<std_msgs::Empty>(), {.name = "simulation"}, reset, reset_echo(),
+            table);
 }
 
 }  // namespace gloam

@@ -33,7 +33,7 @@ LatchedEncoder label_info(Id id, Name name) {
 
 }  // namespace
 
-void add_label_topics(const TopicSource& world, TopicTable* table) {
+void add_label_topics(const TopicWorld& world, TopicTable* table) {
   for (const StreamInfo& stream : list_streams(*world)) {
     if (stream.kind != StreamKind::kCamera ||
         std::ranges::count(stream.outputs, "segmentation") == 0)
@@ -45,7 +45,8 @@ void add_label_topics(const TopicSource& world, TopicTable* table) {
             .frame_id = stream.frame_id,
             .qos = kLatchedQos,
             .is_logged = false,
-            .source = "camera " + stream.name},
+            .source = {TopicSource::Kind::kCamera, stream.name},
+            .is_large = true},
            {},
            {},
            std::move(encode)});

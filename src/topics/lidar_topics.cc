@@ -2,7 +2,7 @@
 
 #include <cstring>
 
-#include "ros/messages/sensor_images.h"
+#include "ros/messages/sensor_msgs.h"
 #include "topics/ros_values.h"
 #include "topics/topic_table.h"
 #include "world/streams.h"
@@ -46,7 +46,7 @@ Status encode_scan(const TopicInfo& topic, const LidarScan& scan, MessageBytes* 
 
 }  // namespace
 
-void add_lidar_topics(const TopicSource& world, TopicTable* table) {
+void add_lidar_topics(const TopicWorld& world, TopicTable* table) {
   for (const StreamInfo& stream : World(world).streams()) {
     if (stream.kind != StreamKind::kLidar) continue;
     Topic& topic = table->emplace_back();
@@ -55,7 +55,8 @@ void add_lidar_topics(const TopicSource& world, TopicTable* table) {
                   .frame_id = stream.frame_id,
                   .rate = stream.rate,
                   .qos = kSensorQos,
-                  .source = "lidar " + stream.name};
+                  .source = {TopicSource::Kind::kLidar, stream.name},
+                  .is_large = true};
     topic.streams = {stream.name};
     topic.code = ScanEncoder(encode_scan);
   }

@@ -11,7 +11,7 @@ namespace {
 constexpr Rational kMetricRate = {10, 1};  // of messages [Hz]
 
 /// Metrics of one subscription, without those of light and visibility, which take a renderer.
-InstantEncoder encode_metrics(const TopicSource& world) {
+InstantEncoder encode_metrics(const TopicWorld& world) {
   Result<std::unique_ptr<Metrics>> made = Metrics::make(*world);
   if (!made.ok()) {
     return [error = made.error()](const TopicInfo&, TopicInstant&, MessageBytes*) {
@@ -35,7 +35,7 @@ InstantEncoder encode_metrics(const TopicSource& world) {
 
 }  // namespace
 
-void add_metric_topics(const TopicSource& world, TopicTable* table) {
+void add_metric_topics(const TopicWorld& world, TopicTable* table) {
   const Result<std::unique_ptr<Metrics>> metrics = Metrics::make(*world);
   if (metrics.ok() && (*metrics)->infos().empty()) return;  // errors: told when it is opened
   const bool is_asked_for = !world->scene.metrics.empty() || !world->scene.goals.empty();
@@ -45,7 +45,7 @@ void add_metric_topics(const TopicSource& world, TopicTable* table) {
                 .frame_id = kWorldFrameId,
                 .rate = kMetricRate,
                 .is_logged = is_asked_for,
-                .source = "metrics"};
+                .source = {.name = "metrics"}};
   topic.sampled = world->scene.record.metrics_rate;  // as in a recorded run
   topic.code = InstantEncoderMaker([world] { return encode_metrics(world); });
   table->push_back(std::move(topic));

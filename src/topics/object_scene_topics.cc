@@ -137,7 +137,7 @@ class EntityMaker {
   size_t* points_;
 };
 
-LatchedEncoder scene_update(const TopicSource& world) {
+LatchedEncoder scene_update(const TopicWorld& world) {
   return [world](const TopicInfo& topic, const LatchedInputs& at, MessageBytes* out) -> Status {
     const mjModel& m = *world->model;
     foxglove_msgs::SceneUpdate message;
@@ -167,14 +167,15 @@ LatchedEncoder scene_update(const TopicSource& world) {
 
 }  // namespace
 
-void add_object_scene_topics(const TopicSource& world, TopicTable* table) {
+void add_object_scene_topics(const TopicWorld& world, TopicTable* table) {
   if (world->model->ngeom == 0) return;
   table->push_back({{.name = "/scene",
                      .type = type_name<foxglove_msgs::SceneUpdate>(),
                      .frame_id = kWorldFrameId,
                      .qos = kLatchedQos,
                      .is_logged = false,
-                     .source = "shapes of all bodies"},
+                     .source = {.name = "shapes of all bodies"},
+                     .is_large = true},
                     {},
                     {},
                     scene_update(world)});

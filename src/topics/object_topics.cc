@@ -134,13 +134,14 @@ Status encode_agents(const TopicInfo& topic, TopicInstant& at, MessageBytes* out
 
 }  // namespace
 
-void add_object_topics(const TopicSource& world, TopicTable* table) {
+void add_object_topics(const TopicWorld& world, TopicTable* table) {
   const auto add = [table](const char* name, const char* source, InstantEncoder encode) {
     table->push_back({{.name = name,
                        .type = type_name<visualization_msgs::MarkerArray>(),
                        .frame_id = kWorldFrameId,
                        .rate = kMarkerRate,
-                       .source = source},
+                       .source = {.name = source},
+                       .is_large = true},
                       {},
                       {},
                       std::move(encode)});

@@ -69,7 +69,7 @@ InstantEncoder odometry(int joint, int body) {
 }
 
 // A URDF as it is, since it is what ROS's tools read; of another file the URDF of its model.
-LatchedEncoder description(const TopicSource& world, size_t robot) {
+LatchedEncoder description(const TopicWorld& world, size_t robot) {
   return [world, robot](const TopicInfo&, const LatchedInputs&, MessageBytes* out) -> Status {
     const RobotInstance& instance = world->robots[robot];
     std::string text;
@@ -84,11 +84,11 @@ LatchedEncoder description(const TopicSource& world, size_t robot) {
 
 }  // namespace
 
-void add_robot_topics(const TopicSource& world, TopicTable* table) {
+void add_robot_topics(const TopicWorld& world, TopicTable* table) {
   const mjModel& m = *world->model;
   for (const RobotInstance& robot : world->robots) {
     const std::string space = "/" + topic_token(robot.name);
-    const std::string source = "robot " + robot.name;
+    const TopicSource source = {TopicSource::Kind::kRobot, robot.name};
     const std::string root = robot.root_body > 0 ? body_frame(m, robot.root_body) : kWorldFrameId;
     if (JointList joints = joints_of(m, robot); !joints.ids.empty())
       table->push_back({{.name = space + "/joint_states",
@@ -114,7 +114,8 @@ void add_robot_topics(const TopicSource& world, TopicTable* table) {
       table->push_back({{.name = space + "/robot_description",
                          .type = type_name<std_msgs::String>(),
                          .qos = kLatchedQos,
-                         .source = source},
+                         .source = source,
+                         .is_large = true},
                         {},
                         {},
                         description(world, static_cast<size_t>(&robot - world->robots.data()))});

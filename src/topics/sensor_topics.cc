@@ -118,7 +118,7 @@ SampleEncoder probe_numbers(const ProbeQuantity& quantity) {
 
 class SensorTopics {
  public:
-  SensorTopics(const TopicSource& world, TopicTable* table)
+  SensorTopics(const TopicWorld& world, TopicTable* table)
       : world_(*world), m_(*world->model), table_(table), sensors_(describe_sensors(*world)) {
     for (const StreamInfo& stream : list_streams(*world))
       if (stream.kind == StreamKind::kSensor) streams_.push_back(stream);
@@ -195,7 +195,7 @@ class SensorTopics {
                   .frame_id = first.frame_id,
                   .rate = first.rate.num != 0 ? first.rate : kSampleRate,
                   .qos = kSensorQos,
-                  .source = "sensor " + first.name};
+                  .source = {TopicSource::Kind::kSensor, first.name}};
     for (const int part : parts) {
       topic.streams.push_back(streams_[static_cast<size_t>(part)].name);
       taken_[static_cast<size_t>(part)] = true;
@@ -214,7 +214,7 @@ class SensorTopics {
 
 }  // namespace
 
-void add_sensor_topics(const TopicSource& world, TopicTable* table) {
+void add_sensor_topics(const TopicWorld& world, TopicTable* table) {
   SensorTopics(world, table).add();
 }
 

@@ -45,15 +45,13 @@ bool is_own(const TopicInfo& info) {
 
 /// Topics of one element, in the order of the table.
 struct ElementTopics {
-  std::string source;
+  TopicSource source;
   std::vector<Topic*> topics;
 
   /// "/front" of camera "front"; of topics that do not lie below their element's name the whole
   /// name of the first.
   std::string space() const {
-    constexpr std::string_view kMocap = "mocap body ";
-    const size_t kind = source.starts_with(kMocap) ? kMocap.size() : source.find(' ') + 1;
-    const std::string below = "/" + topic_token(source.substr(kind));
+    const std::string below = "/" + topic_token(source.name);
     const bool is_below = std::ranges::all_of(topics, [&below](const Topic* topic) {
       return topic->info.name == below || topic->info.name.starts_with(below + "/");
     });
@@ -63,7 +61,7 @@ struct ElementTopics {
 
 std::vector<ElementTopics> topics_by_element(TopicTable* table) {
   std::vector<ElementTopics> elements;
-  std::map<std::string, size_t> places;
+  std::map<TopicSource, size_t> places;
   for (Topic& topic : *table) {
     if (is_own(topic.info)) continue;
     const auto [place, is_new] = places.emplace(topic.info.source, elements.size());
@@ -87,8 +85,8 @@ class Namer {
       next = fmt::format("{}{}{}", space, space.ends_with('_') ? "" : "_", number);
     if (next != space)
       notes_->push_back({ErrorKind::kInput,
-                         fmt::format("topics of {} are named '{}', not '{}': {}", element.source,
-                                     next, space, "that name is in use"),
+                         fmt::format("topics of {} are named '{}', not '{}': {}",
+                                     to_string(element.source), next, space, "that name is in use"),
                          {},
                          "use a [[topic]] with `rename` to choose other names"});
     for (Topic* topic : element.topics) {

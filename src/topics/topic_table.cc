@@ -16,7 +16,7 @@ namespace gloam {
 namespace {
 
 // A new kind of topics is a line here.
-constexpr void (*kKinds[])(const TopicSource&, TopicTable*) = {
+constexpr void (*kKinds[])(const TopicWorld&, TopicTable*) = {
     add_world_topics,        add_metric_topics, add_air_topics,      add_diagnostic_topics,
     add_object_topics,       add_robot_topics,  add_actuator_topics, add_sensor_topics,
     add_camera_topics,       add_label_topics,  add_lidar_topics,    add_input_topics,
@@ -57,6 +57,32 @@ Result<const Instant*> TopicInstant::forces() {
   return const_cast<const Instant*>(&instant_);
 }
 
+const char* to_string(TopicSource::Kind kind) {
+  switch (kind) {
+    case TopicSource::Kind::kSimulation:
+      return "simulation";
+    case TopicSource::Kind::kRobot:
+      return "robot";
+    case TopicSource::Kind::kCamera:
+      return "camera";
+    case TopicSource::Kind::kLidar:
+      return "lidar";
+    case TopicSource::Kind::kSensor:
+      return "sensor";
+    case TopicSource::Kind::kGas:
+      return "gas";
+    case TopicSource::Kind::kBody:
+      return "body";
+  }
+  return "simulation";
+}
+
+std::string to_string(const TopicSource& source) {
+  if (source.kind == TopicSource::Kind::kSimulation) return source.name;
+  const char* const mocap = source.kind == TopicSource::Kind::kBody ? "mocap " : "";
+  return fmt::format("{}{} {}", mocap, to_string(source.kind), source.name);
+}
+
 Result<std::vector<const Topic*>> find_topics(const TopicTable& table, const std::string& pattern) {
   std::vector<const Topic*> found;
   for (const Topic& topic : table)
@@ -72,7 +98,7 @@ Result<std::vector<const Topic*>> find_topics(const TopicTable& table, const std
 namespace {
 
 // By the rules alone, without the scene's [[topic]]s.
-TopicTable table_by_rules(const TopicSource& world, std::vector<Error>* notes) {
+TopicTable table_by_rules(const TopicWorld& world, std::vector<Error>* notes) {
   TopicTable table;
   for (const auto add : kKinds) add(world, &table);
   make_names_unique(&table, notes);

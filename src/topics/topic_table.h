@@ -18,19 +18,19 @@ Result<TopicTable> make_topic_table(const std::shared_ptr<const CompiledWorld>& 
 Result<std::vector<const Topic*>> find_topics(const TopicTable& table, const std::string& pattern);
 
 // The kinds, in the order of the table.
-using TopicSource = std::shared_ptr<const CompiledWorld>;
-void add_world_topics(const TopicSource& world, TopicTable* table);
-void add_object_topics(const TopicSource& world, TopicTable* table);
-void add_metric_topics(const TopicSource& world, TopicTable* table);
-void add_air_topics(const TopicSource& world, TopicTable* table);
-void add_diagnostic_topics(const TopicSource& world, TopicTable* table);
-void add_robot_topics(const TopicSource& world, TopicTable* table);
-void add_actuator_topics(const TopicSource& world, TopicTable* table);
-void add_sensor_topics(const TopicSource& world, TopicTable* table);
-void add_camera_topics(const TopicSource& world, TopicTable* table);
-void add_label_topics(const TopicSource& world, TopicTable* table);
-void add_lidar_topics(const TopicSource& world, TopicTable* table);
-void add_input_topics(const TopicSource& world, TopicTable* table);
-void add_object_scene_topics(const TopicSource& world, TopicTable* table);
+using TopicWorld = std::shared_ptr<const CompiledWorld>;
+void add_world_topics(const TopicWorld& world, TopicTable* table);
+void add_object_topics(const TopicWorld& world, TopicTable* table);
+void add_metric_topics(const TopicWorld& world, TopicTable* table);
+void add_air_topics(const TopicWorld& world, TopicTable* table);
+void add_diagnostic_topics(const TopicWorld& world, TopicTable* table);
+void add_robot_topics(const TopicWorld& world, TopicTable* table);
+void add_actuator_topics(const TopicWorld& world, TopicTable* table);
+void add_sensor_topics(const TopicWorld& world, TopicTable* table);
+void add_camera_topics(const TopicWorld& world, TopicTable* table);
+void add_label_topics(const TopicWorld& world, TopicTable* table);
+void add_lidar_topics(const TopicWorld& world, TopicTable* table);
+void add_input_topics(const TopicWorld& world, TopicTable* table);
+void add_object_scene_topics(const TopicWorld& world, TopicTable* table);
 
 }  // namespace gloam

@@ -45,7 +45,7 @@ Status encode_moving_frames(const TopicInfo& topic, TopicInstant& at, MessageByt
 // Optical frames look along +Z, x to the right (REP 103); MuJoCo's cameras along -Z, y up.
 constexpr Pose kOptical = {{}, {0, 1, 0, 0}};
 
-LatchedEncoder static_frames(const TopicSource& world) {
+LatchedEncoder static_frames(const TopicWorld& world) {
   return [world](const TopicInfo& topic, const LatchedInputs& at, MessageBytes* out) {
     const double time = at.time;
     const mjModel& m = *world->model;
@@ -102,13 +102,13 @@ Status encode_contacts(const TopicInfo& topic, TopicInstant& at, MessageBytes* o
 
 }  // namespace
 
-void add_world_topics(const TopicSource& world, TopicTable* table) {
+void add_world_topics(const TopicWorld& world, TopicTable* table) {
   const mjModel& m = *world->model;
   table->push_back({{.name = "/clock",
                      .type = type_name<rosgraph_msgs::Clock>(),
                      .rate = kSampleRate,
                      .qos = kSensorQos,
-                     .source = "simulation time"},
+                     .source = {.name = "simulation time"}},
                     {},
                     {},
                     InstantEncoder(encode_clock)});
@@ -116,7 +116,8 @@ void add_world_topics(const TopicSource& world, TopicTable* table) {
                      .type = type_name<tf2_msgs::TFMessage>(),
                      .frame_id = kWorldFrameId,
                      .qos = kLatchedQos,
-                     .source = "static bodies, sensors"},
+                     .source = {.name = "static bodies, sensors"},
+                     .is_large = true},
                     {},
                     {},
                     static_frames(world)});
@@ -129,7 +130,7 @@ void add_world_topics(const TopicSource& world, TopicTable* table) {
                        .frame_id = kWorldFrameId,
                        .rate = kStateRate,
                        .qos = {.depth = 100},
-                       .source = "moving bodies"},
+                       .source = {.name = "moving bodies"}},
                       {},
                       {},
                       InstantEncoder(encode_moving_frames)});
@@ -138,7 +139,7 @@ void add_world_topics(const TopicSource& world, TopicTable* table) {
                        .type = type_name<gloam_msgs::Contacts>(),
                        .frame_id = kWorldFrameId,
                        .rate = kStateRate,
-                       .source = "contacts"},
+                       .source = {.name = "contacts"}},
                       {},
                       {},
                       InstantEncoder(encode_contacts)});

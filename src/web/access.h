@@ -23,7 +23,7 @@ bool is_loopback_name(std::string_view name);
 struct RequestFacts {
   std::string_view method, target;
   std::string_view host, origin, sec_fetch_site, cookie, authorization;
-  std::string_view websocket_key, websocket_version;
+  std::string_view websocket_key, websocket_version, websocket_protocols;
   std::string_view repeated;  ///< name of a field that decides and is there twice; "" = none
   int hosts = 0;              ///< how many Host fields there are
   int port = 0;               ///< the server's own

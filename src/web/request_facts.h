@@ -11,6 +11,9 @@
 namespace gloam::web {
 
 inline std::string_view view(boost::beast::string_view text) { return {text.data(), text.size()}; }
+inline boost::beast::string_view beast_view(std::string_view text) {
+  return {text.data(), text.size()};
+}
 
 /// Views into the request, which must outlive them. `port`: the server's.
 inline RequestFacts facts_of(
@@ -21,7 +24,7 @@ inline RequestFacts facts_of(
   for (const std::string_view name :
        {"Host", "Origin", "Cookie", "Authorization", "Sec-Fetch-Site", "Upgrade",
         "Sec-WebSocket-Key", "Sec-WebSocket-Version", "Content-Length", "Transfer-Encoding"})
-    if (request.count(boost::beast::string_view(name.data(), name.size())) > 1) repeated = name;
+    if (request.count(beast_view(name)) > 1) repeated = name;
   const auto field = [&](auto name) { return view(request[name]); };
   return {.method = view(request.method_string()),
           .target = view(request.target()),
@@ -32,6 +35,7 @@ inline RequestFacts facts_of(
           .authorization = field(http::field::authorization),
           .websocket_key = field(http::field::sec_websocket_key),
           .websocket_version = field(http::field::sec_websocket_version),
+          .websocket_protocols = field(http::field::sec_websocket_protocol),
           .repeated = repeated,
           .hosts = static_cast<int>(request.count(http::field::host)),
           .port = port,

@@ -102,7 +102,8 @@ Framing framing_of(const mjModel& m, const std::vector<Affine3f>& poses, size_t 
 void present_model(const CompiledWorld& world, RenderDescription* out) {
   const Scene& scene = world.scene;
   const EnvironmentOptions& place = scene.environment;
-  if (scene.render.look == "model" || !place.file.empty() || has_generator(place)) return;
+  if (scene.render.look == RenderLook::kModel || !place.file.empty() || has_generator(place))
+    return;
   const mjModel& m = *world.model;
   const std::vector<DrawnPart> all = drawn_parts(*out, body_poses_at_start(world));
   const std::vector<DrawnPart> subject =
@@ -113,7 +114,7 @@ void present_model(const CompiledWorld& world, RenderDescription* out) {
   free.culls_backs = false;
   if (needs_studio(scene, *out)) return add_studio(subject, all, free.X_WC, out);
   const bool own_light = !scene.lights.empty() || scene.sky;  // light of the scene, in real units
-  if (scene.render.look == "auto" && !own_light) open_exposure(subject, free.X_WC, out);
+  if (scene.render.look == RenderLook::kAuto && !own_light) open_exposure(subject, free.X_WC, out);
 }
 
 /// Steps of the description of a World whose render origin is the world's. Their order is that of

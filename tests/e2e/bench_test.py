@@ -80,8 +80,8 @@ class Programs(ProgramTest):
         scene = ROOT / "bench" / "realistic_scenes" / "plain_room.toml"
         interactive = [scene, "--tier", "interactive"]
         for arguments, code, message in [(["--help"], 0, "usage: "), ([scene], 2, "usage: "), (["--tier", "interactive"], 2, "usage: "),
-                                         ([*interactive, "--siez", "9x9"], 2, "usage: "), ([*interactive, "--device", "gpu"], 2, "usage: "),
-                                         ([scene, "--tier", "slow"], 1, "path, interactive, direct"), ([*interactive, "--size", "0x5"], 2, "0 x 5"),
+                                         ([*interactive, "--siez", "9x9"], 2, "usage: "), ([*interactive, "--device", "gpu"], 2, "did you mean 'cpu'"),
+                                         ([scene, "--tier", "slow"], 2, "path, interactive, direct"), ([*interactive, "--size", "0x5"], 2, "0 x 5"),
                                          ([*interactive, "--camera", "from..two"], 1, "did you mean 'to'"), ([*interactive, "--camera", "from..from"], 1, "same place")]:
             result = subprocess.run([str(PROGRAM.parent / "bench_realistic_rate"), *map(str, arguments)], capture_output=True, text=True, timeout=120,
                                     env={**os.environ, "GLOAM_CACHE": str(self.folder / "cache")})

@@ -157,7 +157,8 @@ class Debian13(unittest.TestCase):
         chroot = self.fresh("bundle")
         subprocess.run(["tar", "-xf", bundle, "-C", chroot.folder / "root"], check=True)
         printed = self.succeeds(chroot, "cd /root && gloam/bin/gloam run gloam/share/gloam/examples/demo.toml --duration 0.1 --resolution 64x48"
-                                " --spp 1 --device cpu --out out && ls out && ! ldd gloam/bin/gloam | grep 'not found'")
+                                " --spp 1 --device cpu --out out && ls out && ! ldd gloam/bin/gloam | grep 'not found'"
+                                " && gloam/bin/gloam report out -o out.html && gloam/bin/gloam export out/metrics.csv --to parquet --out out.parquet")
         self.assertIn("summary.json", printed)
 
 

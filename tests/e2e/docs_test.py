@@ -16,7 +16,7 @@ ROOT = Path(__file__).resolve().parents[2]
 # The tests and the benches themselves: this test is part of the first, the others take an hour.
 NOT_HERE = re.compile(r"^(\./gloam (test|bench|mitsuba|gallery|pack|wheel|docs)\b|\./gloam demo$|git clone|cd )")
 # Minutes of two cores, of code that other commands run too: only with GLOAM_TEST_FULL=1, as `./gloam test full` sets it.
-IN_FULL = re.compile(r"^\./gloam demo adversity --quick")
+IN_FULL = re.compile(r"^\./gloam (demo adversity --quick|replay fire\.mcap .*(smoky|night)\.toml|report clear smoky night)")
 NEEDS_A_CARD = re.compile(r"^GLOAM_PRESET=cuda ")  # and minutes of nvcc; gloam_cuda_test shows that it compiles
 MINUTES = 60
 WIDEST = 140  # [columns]; prose is wrapped at 120
@@ -85,13 +85,20 @@ class Rules(unittest.TestCase):
 
 
 class Documentation(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        folder = tempfile.TemporaryDirectory(prefix="gloam_docs_cache_")
+        cls.addClassCleanup(folder.cleanup)
+        cls.cache = folder.name  # of all pages: each would compile the same scenes
+
     def run_page(self, path):
         with tempfile.TemporaryDirectory(prefix="gloam_docs_") as scratch:
             os.symlink(ROOT / "gloam", Path(scratch) / "gloam")
             for name in ["examples", "assets"]:  # copies: a scene may not read through links out of its root
                 shutil.copytree(ROOT / name, Path(scratch) / name)
             save_scenes(path, Path(scratch))
-            own = {**os.environ, "GLOAM_CACHE": str(Path(scratch) / "cache")}  # a page clears it
+            clears = any("gloam cache clear" in command for command in commands(path))
+            own = {**os.environ, "GLOAM_CACHE": str(Path(scratch) / "cache") if clears else self.cache}
             for command in commands(path):
                 if NOT_HERE.match(command) or (NEEDS_A_CARD.match(command) and not shutil.which("nvidia-smi")):
                     continue

@@ -1,8 +1,11 @@
-"""./gloam --help and its kin in a copy of the repository in which nothing is built: they write nothing."""
+"""./gloam help, --help, --version and doctor in a copy of the repository in which nothing is built: they write nothing."""
+import json
 import os
+import re
 import shutil
 import subprocess
 import tempfile
+import time
 import unittest
 from pathlib import Path
 
@@ -32,9 +35,9 @@ class HelpWithoutABuild(unittest.TestCase):
             else:
                 shutil.copy2(source, cls.copy / name)
 
-    def ask(self, *arguments):
+    def ask(self, *arguments, **variables):
         before = files_below(self.folder)
-        env = {"PATH": os.environ["PATH"], "HOME": str(self.home)}
+        env = {"PATH": os.environ["PATH"], "HOME": str(self.home), **variables}
         result = subprocess.run([str(self.copy / "gloam"), *arguments], cwd=self.copy, text=True, capture_output=True, timeout=60,
                                 stdin=subprocess.DEVNULL, env=env)
         self.assertEqual(files_below(self.folder), before, f"{arguments} makes files")
@@ -61,13 +64,50 @@ class HelpWithoutABuild(unittest.TestCase):
         self.assertEqual(self.ask("run", "scene.toml", "-h").returncode, 0)
 
     def test_commands_of_the_script(self):
-        for command in ("setup", "test", "bench", "pack", "wheel", "mitsuba", "gallery", "doctor"):
+        for command in ("setup", "test", "bench", "pack", "wheel", "mitsuba", "gallery", "docs", "doctor"):
             result = self.ask(command, "--help")
             self.assertEqual(result.returncode, 0, command)
-            self.assertRegex(result.stdout.lower(), rf"(usage: )?\./gloam {command}", command)
+            self.assertRegex(result.stdout.lower(), rf"usage: \./gloam {command}", command)
+            self.assertEqual(self.ask("help", command).stdout, result.stdout)
 
-    def test_doctor_makes_nothing(self):
-        self.assertIn("processor", self.ask("doctor").stdout)
+    def test_help_is_a_command_too(self):
+        self.assertEqual(self.ask("help").stdout, self.ask("--help").stdout)
+        self.assertEqual(self.ask("help", "run").stdout, self.ask("run", "--help").stdout)
+
+    def test_no_command_is_a_usage_error(self):
+        result = self.ask()
+        self.assertEqual(result.returncode, 2)
+        self.assertEqual(result.stderr, self.ask("--help").stdout)
+
+    def test_doctor_reports_a_machine_without_a_build(self):
+        result = self.ask("doctor", "--json")
+        self.assertEqual(result.returncode, 1)
+        found = {item["name"]: item for item in json.loads(result.stdout)}
+        self.assertEqual(found["Gloam"]["found"], re.search(r"gloam VERSION ([\d.]+)", (ROOT / "CMakeLists.txt").read_text())[1])
+        self.assertRegex(found["compiler"]["found"], r"^g\+\+ \d+")
+        for name in ("MuJoCo 4.0.1", "build"):
+            self.assertFalse(found[name]["ok"])
+            self.assertIn("./gloam setup", found[name]["fix"])
+        for item in found.values():
+            self.assertEqual(item["ok"], not item["fix"], item)
+
+    def test_doctor_names_missing_packages_and_their_command(self):
+        query = self.home / "dpkg-query"
+        query.write_text("#!/bin/sh\necho 'cmake installed'\n")
+        query.chmod(0o755)
+        result = self.ask("doctor", PATH=f"{self.home}:{os.environ['PATH']}")
+        self.assertRegex(result.stdout, r"MISS Debian packages .*ninja-build")
+        self.assertRegex(result.stdout, r"-> .*apt-get install .*ninja-build")
+        self.assertNotRegex(result.stdout, r"apt-get install .*\bcmake\b")
+
+    def test_answers_take_no_second(self):
+        for words in (["--help"], ["--version"], ["help", "test"], ["doctor"]):
+            times = []
+            for _ in range(3):
+                begin = time.monotonic()
+                self.ask(*words)
+                times.append(time.monotonic() - begin)
+            self.assertLess(min(times), 1.0, words)
 
     def test_what_comes_after_two_dashes_is_no_question(self):
         result = subprocess.run(["bash", "-c", f'source {self.copy}/tools/help.sh; asks_for_help check -- --help'], timeout=10)

@@ -138,6 +138,20 @@ class Report(unittest.TestCase):
         self.gloam("report", "swing-001", "swing-002", "swing-003", "near", "-o", "again.html")
         self.assertEqual((self.folder / "again.html").read_text(), self.html)
 
+    def test_the_program_alone_makes_pages_tables_and_plots(self):
+        # As in a bundle or an installation (ARCHITECTURE.md): no interpreter in PATH, no variables, and no network where that can be had.
+        unshare = shutil.which("unshare")
+        isolated = unshare and subprocess.run([unshare, "-rn", "true"], capture_output=True).returncode == 0
+        (self.folder / "line.tum").write_text("".join(f"{t} {t} 0 0 0 0 0 1\n" for t in range(5)))
+        for command in ("report swing-001 swing-002 swing-003 near -o alone.html", "export near/metrics.csv --to parquet --out alone.parquet",
+                        "evaluate line.tum --reference line.tum --plot alone.svg"):
+            made = subprocess.run([*([unshare, "-rn"] if isolated else []), str(PROGRAM), *command.split()], cwd=self.folder, timeout=300,
+                                  env={"PATH": "/nonexistent"}, capture_output=True, text=True)
+            self.assertEqual(made.returncode, 0, made.stdout + made.stderr)
+        self.assertEqual((self.folder / "alone.html").read_text(), self.html)
+        self.assertEqual((self.folder / "alone.parquet").read_bytes()[-4:], b"PAR1")
+        self.assertTrue((self.folder / "alone.svg").read_text().startswith("<svg "))
+
     @unittest.skipUnless(browser.find(), "no Chromium is installed")
     def test_a_browser_has_no_complaints(self):
         page = browser.Browser(1300, 1000)

@@ -92,7 +92,7 @@ class Site(unittest.TestCase):
             self.assertIn(f"docs/{'index' if guide.stem == 'README' else guide.stem}.html", pages)
         for header in (ROOT / "include" / "gloam").rglob("*.h"):
             self.assertIn(f"api/cpp/{header.relative_to(ROOT / 'include' / 'gloam').with_suffix('.html')}", pages)
-        self.assertTrue(any("sim.step_until" in text for text in texts.values()))
+        self.assertTrue(any("sim.run_until" in text for text in texts.values()))
         titles = [entry["title"] for entry in index["docs"] if "#" not in entry["location"]]
         self.assertEqual({title for title in titles if titles.count(title) > 1}, set(), "pages that a search cannot tell apart")
 

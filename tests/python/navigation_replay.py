@@ -112,11 +112,11 @@ def _touching(sim: gloam.Simulation) -> list[str]:
     """Bodies of other things that the robot touches, above the floor's clutter and not from above."""
     found = []
     for contact in sim.contacts():
-        robot, other = sorted(contact["geoms"], key=lambda name: not name.startswith("go/"))
+        robot, other = sorted(contact.geoms, key=lambda name: not name.startswith("go/"))
         inside = other.startswith("go/") or not robot.startswith("go/")
-        level = float(contact["normal"][2]) ** 2 > 0.5
-        pushes = any(float(v) != 0.0 for v in contact["force"])
-        if not inside and not level and pushes and float(contact["position"][2]) >= 0.05:
+        level = float(contact.normal[2]) ** 2 > 0.5
+        pushes = any(float(v) != 0.0 for v in contact.force)
+        if not inside and not level and pushes and float(contact.position[2]) >= 0.05:
             found.append("/".join(other.split("/")[:-1]) or other)
     return found
 

@@ -116,7 +116,7 @@ def test_topics_publish_the_battery_and_the_motors(tmp_path):
 
 def test_metrics_contain_the_electrical_energy(tmp_path):
     scene = write_scene(tmp_path, EVERYTHING.replace('"joint_position"', '"joint_position"\ntarget = [0.5, -0.5]'))
-    gloam.run(scene, tmp_path / "out")
+    gloam.run(scene, tmp_path / "out", outputs=("metrics",))
     results = json.loads((tmp_path / "out" / "summary.json").read_text())["results"]
     energy = results["arm.electrical_energy_J"]
     drawn = (1 - results["arm.battery_charge"]) * 0.01 * 3600  # [C]

@@ -59,7 +59,7 @@ def test_frames_outlive_their_stream(tmp_path: Path) -> None:
 
 def test_scans_outlive_their_simulation(tmp_path: Path) -> None:
     sim = gloam.load(Path(gloam.home()) / "examples" / "lidar.toml")
-    lidar = sim.lidars[next(iter(sim.lidars))]
+    lidar = sim.lidars[next(iter(sim.lidars))].open()
     scan = lidar.next()
     kept = keep(points=scan.points, intensity=scan.intensity, ring=scan.ring, range=scan.range)
     sim.close()

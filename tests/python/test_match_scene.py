@@ -116,7 +116,7 @@ def test_the_written_camera_shows_the_scene_where_the_pairs_are(shot: Shot, matc
     with gloam.load(copy) as sim:
         frame = sim.cameras["photo"].render(("depth", "rgb"), width=4 * SIZE[0], height=4 * SIZE[1], tier="direct", spp=1)
         info, pose = frame.info, frame.pose
-        solved = Camera(replace(LENS, f=float(frame.K[0, 0]) / 4, k1=info["d"][0], k2=info["d"][1]), OPTICAL @ pose.R.T, pose.p)
+        solved = Camera(replace(LENS, f=float(frame.K[0, 0]) / 4, k1=info.d[0], k2=info.d[1]), OPTICAL @ pose.R.T, pose.p)
         labels = sim.labels()
     assert labels and frame.K[0, 2] == pytest.approx(2 * SIZE[0])
     pixels, depth = solved.project(shot.points)

@@ -24,6 +24,24 @@ def test_options_that_there_are_not_raise(tmp_path: Path) -> None:
                 call()
 
 
+@pytest.mark.parametrize(
+    "option, message",
+    [
+        ({"tier": "raster"}, "there is no render tier 'raster'.*one of: path, interactive, direct"),
+        ({"tier": "pth"}, "there is no render tier 'pth'.*did you mean 'path'"),
+        ({"device": "gpu"}, "there is no render device 'gpu'"),
+        ({"look": "studoi"}, "there is no look 'studoi'.*did you mean 'studio'"),
+    ],
+)
+def test_unknown_words_of_render_options_are_errors(tmp_path: Path, option: dict[str, str], message: str) -> None:
+    with gloam.load(ball_scene(tmp_path)) as sim:
+        small = sim.cameras["small"]
+        for call in (lambda: small.open(**option), lambda: small.render(**option), lambda: sim.view(**option).__enter__()):
+            with pytest.raises(gloam.UsageError, match=message):
+                call()
+        assert small.render(("depth",), tier=None, device="cpu", look="model", spp=1).depth.shape
+
+
 def test_use_after_close(tmp_path: Path) -> None:
     sim = gloam.load(ball_scene(tmp_path))
     camera = sim.cameras["small"].open(("depth",), tier="direct", spp=1)
@@ -41,7 +59,7 @@ def test_use_after_close(tmp_path: Path) -> None:
 def test_wrong_types_raise(tmp_path: Path) -> None:
     sim = gloam.load(ball_file(tmp_path))
     for call in (lambda: sim.step(None), lambda: sim.step("x"), lambda: sim.step(-1), lambda: sim.run_until(), lambda: sim.run_until(float("nan")),
-                 lambda: sim.step_until(None), lambda: sim.bodies["ball"].push(force=(1, 2)), lambda: sim.bodies["ball"].push(force="up"),
+                 lambda: sim.step_until(None), lambda: sim.step_until(sim.cameras["front"]), lambda: sim.bodies["ball"].push(force=(1, 2)), lambda: sim.bodies["ball"].push(force="up"),
                  lambda: sim.joints["elbow"].set(qpos=[1, 2, 3]), lambda: sim.actuators.__getitem__(3), lambda: sim.set(None, 1),
                  lambda: gloam.load(None), lambda: gloam.load(3), lambda: gloam.load(ball_file(tmp_path), seed=-1),
                  lambda: gloam.load(ball_file(tmp_path), seed="7"), lambda: gloam.load(ball_file(tmp_path), pace="slow"),
@@ -120,11 +138,11 @@ def test_threads_that_step_take_turns(tmp_path: Path) -> None:
 
 def test_a_callback_that_steps_is_told(tmp_path: Path) -> None:
     with gloam.load(ball_file(tmp_path)) as sim:
-        sim.sensors["where"].open(callback=lambda sample: sim.step())
+        where = sim.sensors["where"].open(callback=lambda sample: sim.step())
         with pytest.raises(gloam.UsageError, match="callback"):
             for _ in range(50):
                 sim.step(2)
-        sim.sensors["where"].close()
+        where.close()
         sim.on_step(lambda memory: sim.reset())
         with pytest.raises(gloam.UsageError, match="callback"):
             sim.step()
@@ -225,9 +243,9 @@ def start():
 gone = start()
 assert gone() is not None
 other = gloam.load({str(ball_file(tmp_path))!r})
-other.sensors["where"].open(callback=lambda sample: gc.collect())
+where = other.sensors["where"].open(callback=lambda sample: gc.collect())
 other.step(5)
-other.sensors["where"]._stream.flush()
+where.flush()
 print("freed" if gone() is None else "kept")
 sim = gloam.load({str(ball_file(tmp_path))!r})
 sim.step(10)

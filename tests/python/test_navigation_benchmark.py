@@ -165,10 +165,10 @@ class _Sim:
     def robots(self) -> dict[str, _Robot]:
         return {ROBOT: _Robot(self)}
 
-    def contacts(self) -> list[dict[str, object]]:
+    def contacts(self) -> list[gloam.Contact]:
+        place, force, torque = np.array([0, 0, 0.2]), np.array([1.0, 0, 0]), np.zeros(3)
         return [
-            {"geoms": (f"{ROBOT}/trunk", name), "normal": normal, "position": (0, 0, 0.2), "force": (1, 0, 0)}
-            for name, normal in self.hits
+            gloam.Contact((f"{ROBOT}/trunk", name), place, np.array(normal, float), 0.0, force, torque) for name, normal in self.hits
         ]
 
 

@@ -77,9 +77,9 @@ class _Sim:
     def __init__(self, z: float) -> None:
         self._z = z
 
-    def contacts(self) -> list[dict[str, object]]:
-        position = (1.0, 0.0, self._z)
-        return [{"geoms": (f"{ROBOT}/trunk", "rock_1/c"), "normal": (1, 0, 0), "position": position, "force": (1, 0, 0)}]
+    def contacts(self) -> list[gloam.Contact]:
+        place, forward = np.array([1.0, 0.0, self._z]), np.array([1.0, 0.0, 0.0])
+        return [gloam.Contact((f"{ROBOT}/trunk", "rock_1/c"), place, forward, 0.0, forward, np.zeros(3))]
 
 
 def test_contacts_are_low_above_the_ground() -> None:

@@ -216,7 +216,7 @@ class _Probe:
     def open(self) -> _Probe:
         return self
 
-    def waiting(self) -> Iterator[Any]:
+    def __iter__(self) -> Iterator[Any]:
         while self._values:
             yield SimpleNamespace(values=[self._values.pop(0)])
 

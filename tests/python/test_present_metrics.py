@@ -1,4 +1,4 @@
-"""sim.metrics adds up at record.metrics_rate, as a recorded run does, whatever the rate of the topic /metrics."""
+"""open_metrics() accumulates at record.metrics_rate, as a recorded run does, whatever the rate of the topic /metrics."""
 from __future__ import annotations
 
 from pathlib import Path
@@ -14,9 +14,9 @@ def test_metrics_are_those_of_a_recorded_run(tmp_path: Path, rate: int) -> None:
                                    "robot": [{"name": "dog", "file": str(QUADRUPED), "keyframe": "home", "controller": {"type": "trot"}}]})
     report = gloam.run(scene, tmp_path / "run", outputs=["metrics"])
     with gloam.load(scene) as sim:
-        _ = sim.metrics
+        metrics = sim.open_metrics()
         sim.run_until(1.0)
-        found = sim.metrics
+        found = metrics.latest()
         with sim.subscribe(["/metrics"]) as heard:
             sim.run_until(2.0)
             assert len(list(heard)) == 6, "five a second, and the first"

@@ -83,15 +83,16 @@ def fly(examples: Path, tables: dict[str, Any], log: Path) -> tuple[np.ndarray, 
     """Positions at 50 Hz (n, 3), probes at 10 Hz, and the charge of the battery at the end."""
     path, probes = [], {p["name"]: [] for p in tables["probe"]}
     with gloam.load(gloam.Scene.from_dict(tables, folder=examples)) as sim:
-        for name in probes:
-            sim.sensors[name].open()
+        streams = {name: sim.sensors[name].open() for name in probes}
         with sim.record(log, topics=["/tf"]):
             for step in range(1, int(tables["sim"]["duration"] * 50) + 1):
                 sim.run_until(time=step / 50)
                 path.append(sim.bodies["drone/frame"].pose.p.copy())
                 if step % 5 == 0:
                     for name, values in probes.items():
-                        values.append(np.array(sim.sensors[name].values))
+                        sample = streams[name].latest()
+                        assert sample is not None
+                        values.append(np.array(sample.values))
         charge = sim.robots["drone"].battery["charge"]
     return np.array(path), {name: np.array(values) for name, values in probes.items()}, charge
 

@@ -54,7 +54,7 @@ def test_materials_become_flat(scene: gloam.Scene) -> None:
     assert tables and any("keeps its image" in line for line in told)
     with gloam.Simulation(scene.overlay({"material": tables}).compile()) as sim:
         frame = sim.cameras["room"].render(("albedo", "segmentation"), width=160, height=120, tier="path", spp=4)
-        material = {label["part"]: label["material"] for label in sim.labels()}
+        material = {label.part: label.material for label in sim.labels()}
         parts, albedo = np.array(frame.part), np.array(frame.albedo)
         for table in tables:
             seen = np.isin(parts, [part for part, name in material.items() if name == table["name"]])

@@ -59,7 +59,7 @@ def test_errors_name_file_and_line(tmp_path: Path) -> None:
 def test_worlds_tell_what_they_hold() -> None:
     world = gloam.Scene(QUADRUPED).compile()
     assert len(world.joints) == 13 and world.robots and world.timestep == 0.002
-    assert any(t["name"] == "/tf" for t in world.topics())
+    assert any(topic.name == "/tf" for topic in world.topics())
     assert world.scene.compile().joints == world.joints
 
 

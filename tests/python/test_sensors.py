@@ -21,7 +21,7 @@ def test_frames_come_in_order_at_their_times(tmp_path: Path) -> None:
             assert frame.rgb.shape == (24, 32, 3) and frame.depth.shape == (24, 32) and frame.ids.dtype == np.uint32
         sim.step(100)  # time goes on without the camera
         frame = camera.next()
-        assert frame.stamp >= 0.06 + 0.2 - 1e-9 and camera.frame is frame
+        assert frame.stamp >= 0.06 + 0.2 - 1e-9 and camera.latest() is frame
 
 
 def test_the_picture_after_a_reset_is_the_new_worlds(tmp_path: Path) -> None:
@@ -50,14 +50,15 @@ def test_a_changed_option_changes_the_picture(tmp_path: Path) -> None:
 
 def test_arrays_share_the_frames_memory_and_keep_it(tmp_path: Path) -> None:
     with gloam.load(ball_scene(tmp_path)) as sim:
-        frame = sim.step_until(sim.cameras["small"].open(**FAST))
+        camera = sim.cameras["small"].open(**FAST)
+        frame = sim.step_until(camera)
         one, other = frame.rgb, frame.rgb
         assert one.__array_interface__["data"][0] == other.__array_interface__["data"][0]
         assert np.from_dlpack(one).__array_interface__["data"][0] == one.__array_interface__["data"][0]
         kept = one.copy()
         for _ in range(5):
-            sim.step_until(sim.cameras["small"])
-    del frame, other, sim
+            sim.step_until(camera)
+    del frame, other, sim, camera
     gc.collect()
     assert np.array_equal(one, kept)
 
@@ -67,7 +68,7 @@ def test_depth_is_where_the_ball_is(tmp_path: Path) -> None:
         pose = gloam.Pose(np.array([0.0, -3.0, 1.0]), np.array([np.sqrt(0.5), np.sqrt(0.5), 0, 0]))
         frame = sim.cameras["free"].render(("depth", "segmentation"), width=65, height=65, pose=pose, **FAST)
         assert frame.depth[32, 32] == pytest.approx(3 - 0.1, abs=1e-3)
-        names = {row["instance"]: row["instance_name"] for row in sim.labels()}
+        names = {label.instance: label.instance_name for label in sim.labels()}
         assert names[int(frame.ids[32, 32])] == "ball"
         assert frame.X_WC[:3, 3] == pytest.approx((0, -3, 1))
 
@@ -95,14 +96,14 @@ def test_sensors_and_callbacks(tmp_path: Path) -> None:
         sim.step(10)
         assert sensor.values[2] == pytest.approx(sim.joints["free"].qpos[2], abs=0.01)
         heights: list[float] = []
-        sensor.open(callback=lambda sample: heights.append(sample.values[2]))
+        stream = sensor.open(callback=lambda sample: heights.append(sample.values[2]))
         sim.step(20)
-        sensor._stream.flush()
+        stream.flush()
         assert len(heights) == 21 and heights == sorted(heights, reverse=True)
         frames: list[gloam.Frame] = []
-        sim.cameras["front"].open(("rgb",), width=16, height=12, rate=50, callback=frames.append, **FAST)
+        camera = sim.cameras["front"].open(("rgb",), width=16, height=12, rate=50, callback=frames.append, **FAST)
         sim.step(100)
-        sim.cameras["front"]._stream.flush()
+        camera.flush()
         assert len(frames) >= 10 and frames[0].rgb.shape == (12, 16, 3)
 
 
@@ -150,12 +151,16 @@ def test_probes_are_sensors(tmp_path: Path) -> None:
     }, tmp_path)
     with gloam.load(scene) as sim:
         assert sim.world.probes == ["mast", "landing"] and sim.sensors["mast"].name == "mast"
-        landing = sim.sensors["landing"].open()
+        landing, mast = sim.sensors["landing"].open(), sim.sensors["mast"].open()
         for n in range(3):
-            sample = sim.sensors["mast"].next()
+            sample = mast.next()
             assert sample.stamp == pytest.approx(n / 50) and np.allclose(sample.values, (0, 6, 0))
-        assert landing.values.shape == (3,) and np.allclose(landing.values, 0), "it falls"
+        sample = landing.latest()
+        assert sample is not None and sample.values.shape == (3,) and np.allclose(sample.values, 0), "it falls"
         sim.run_until(2.0)
-        assert np.allclose(landing.values, (0, 0, 9.81), atol=0.05), "it lies on the floor"
+        sample = landing.latest()
+        assert sample is not None and np.allclose(sample.values, (0, 0, 9.81), atol=0.05), "it lies on the floor"
+        with pytest.raises(gloam.UsageError, match="open"):
+            _ = sim.sensors["mast"].values
         with pytest.raises(KeyError, match="mast"):
             sim.sensors["masts"]

@@ -194,15 +194,15 @@ def test_physics_that_fails_tells_and_a_reset_goes_on(sim: gloam.Simulation) -> 
 def test_metrics_topics_and_inputs(tmp_path: Path) -> None:
     scene = gloam.Scene.from_dict({"robot": [{"name": "dog", "file": str(QUADRUPED), "keyframe": "home", "controller": {"type": "trot"}}]})
     with gloam.load(scene) as sim:
-        _ = sim.metrics
-        with sim.subscribe(["/tf", "/clock"]) as heard:
+        with sim.open_metrics() as metrics, sim.subscribe(["/tf", "/clock"]) as heard:
             sim.publish("/dog/cmd_vel", {"linear": {"x": 0.4}})
             sim.run_until(1.0)
             messages = list(heard)
+            values = metrics.latest()
         assert {m.topic for m in messages} == {"/tf", "/clock"}
         last = [m for m in messages if m.topic == "/clock"][-1].decode()
         assert last["clock"]["sec"] + 1e-9 * last["clock"]["nanosec"] == pytest.approx(1.0)
-        assert sim.metrics["dog.x_m"] == pytest.approx(sim.robots["dog"].pose.p[0], abs=0.01) and sim.metrics["dog.x_m"] > 0.2
+        assert values["dog.x_m"] == pytest.approx(sim.robots["dog"].pose.p[0], abs=0.01) and values["dog.x_m"] > 0.2
         with pytest.raises(gloam.UsageError, match="lineer"):
             sim.publish("/dog/cmd_vel", {"lineer": {"x": 0.4}})
         with pytest.raises(gloam.UsageError, match="cmd_vell"):

@@ -18,6 +18,7 @@ import pytest
 from gloam.slam.adapters.contract import Sequence
 from gloam.slam.benchmark import OUTCOME, Key, Request, case_of, run
 from gloam.slam.report import write_report
+from PIL import Image
 from slam_recompute import differences
 
 FAILS = """import sys, pathlib
@@ -63,6 +64,11 @@ def test_all_conditions_have_one_motion(out: Path) -> None:
     assert images[0][0] != images[1][0] and images[0][1] != images[1][1], "but not one appearance"
 
 
+def measured_pixels(sequence: Sequence) -> float:
+    """The share of pixels whose depth was measured."""
+    return float(np.mean([np.asarray(Image.open(file)) > 0 for _, (file,) in sequence.images(("depth",))]))
+
+
 def test_sequences_are_complete_and_calibrated(out: Path) -> None:
     sequence = Sequence(case_of(out, "house", "none") / "sequence")
     camera = sequence.camera
@@ -71,6 +77,9 @@ def test_sequences_are_complete_and_calibrated(out: Path) -> None:
     frames = list(sequence.images(("rgb", "right", "depth")))
     assert len(frames) == 11 and np.allclose(np.diff([stamp for stamp, _ in frames]), 0.2)
     assert all(file.is_file() for _, files in frames for file in files)
+    measured = measured_pixels(sequence)
+    hidden = measured_pixels(Sequence(case_of(out, "house", "minor") / "sequence"))
+    assert 0.5 < measured < 1 and hidden < measured - 0.05, "smoke hides surfaces from a depth camera"
     imu = sequence.imu()
     assert imu[0, 0] < frames[0][0] and imu[-1, 0] > frames[-1][0] and np.median(np.diff(imu[:, 0])) == pytest.approx(0.005, abs=0.001)
     assert imu[:, 4:].mean(0)[2] == pytest.approx(9.8, abs=1.0), "the trunk is level"

@@ -46,8 +46,7 @@ time.sleep(0.2)
 def test_a_stuck_stream_can_be_closed_by_itself(tmp_path: Path, run_python: Any) -> None:
     model(tmp_path)
     told = run_python(LOAD + """
-where = sim.sensors["where"]
-where.open(required=False, callback=lambda sample: never.wait())
+where = sim.sensors["where"].open(required=False, callback=lambda sample: never.wait())
 sim.step(20)
 time.sleep(0.2)
 closed(where.close)

@@ -92,12 +92,12 @@ model = "diff_drive"
 def test_a_base_without_avoidance_touches_a_person() -> None:
     """The measures of success notice it: contacts, and the gap to the legs."""
     with gloam.load(gloam.Scene.parse(TOUCH, ROOT)) as sim:
-        people = cross_warehouse.People(sim)
-        assert sim.metrics.get("base.collisions", 0) == 0
+        people, metrics = cross_warehouse.People(sim), sim.open_metrics()
+        assert metrics.latest().get("base.collisions", 0) == 0
         assert people.nearest(sim.robots["base"].pose.p) == pytest.approx(0.75, abs=0.1)
         sim.robots["base"].command(vx=0.5)
         sim.run_until(time=2.5)
-        assert sim.metrics["base.collisions"] > 0
+        assert metrics.latest()["base.collisions"] > 0
         assert people.nearest(sim.robots["base"].pose.p) < 0.02
 
 

@@ -151,7 +151,7 @@ def test_the_camera_is_where_the_robot_has_it() -> None:
     file = Path(__file__).resolve().parents[2] / "assets/robots/quadruped/quadruped.xml"
     with gloam.load(file) as sim:
         sim.step()
-        number = list(sim.world.info["sites"]).index("front_stereo_mount")
+        number = sim.world.info.sites.index("front_stereo_mount")
         # Relative to the trunk in the keyframe home: 0.3 m high.
         local = np.array(sim.memory.array("site_xpos"))[number] - np.array(sim.memory.array("qpos"))[:3]
     assert np.allclose(local[:2], (scenes.AHEAD, scenes.LEFT), atol=2e-3)

@@ -18,9 +18,11 @@ ITEM = re.compile(r"^(?:[*-]|\d+\.) ")
 # Pages of the Python reference: title, modules. "MODULE: NAME NAME" shows only these names of the module.
 PYTHON = {
     "simulation": ("Simulations", ["gloam.simulation: load Simulation Checkpoint"]),
-    "scene": ("Scenes and worlds", ["gloam.scene", "gloam.world"]),
+    "scene": ("Scenes, worlds and snapshots", ["gloam.scene", "gloam.world", "gloam.snapshot"]),
     "elements": ("Robots, bodies, joints and actuators", ["gloam.elements"]),
     "sensors": ("Cameras, LiDARs and sensors", ["gloam.cameras"]),
+    "streams": ("Streams and their messages", ["gloam.streams", "gloam.frames", "gloam.messages"]),
+    "info": ("Descriptions of worlds, simulations and logs", ["gloam.info"]),
     "logs": ("Logs", ["gloam.logs"]),
     "commands": ("Commands of the program", ["gloam.batch"]),
     "policies": ("Policies", ["gloam.policy"]),

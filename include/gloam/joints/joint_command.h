@@ -1,6 +1,7 @@
 #pragma once
 // Commands for the joints of a robot: targets of its controller, trajectories, another controller.
 
+#include <cstdint>
 #include <limits>
 #include <vector>
 
@@ -29,8 +30,8 @@ struct SetJointGoal {
 };
 /// Sets targets of a robot's joints, which stay until changed. Each vector has one value per joint,
 /// where NaN removes the target, or is empty = unchanged. Joints that get a position or velocity
-/// leave the trajectory of their robot, which ends. docs/controllers.md lists the targets that each
-/// controller uses.
+/// leave their trajectory, which the others continue to follow. docs/controllers.md lists the
+/// targets that each controller uses.
 struct SetJointCommand {
   Robot robot;
   std::vector<Joint> joints;  ///< empty = all hinges and slides of the robot, in the model's order
@@ -44,17 +45,23 @@ struct SetController {
   Robot robot;
   ControllerOptions controller;
 };
-/// Makes the controller's targets follow a trajectory, evaluated at the controller's rate. Replaces
-/// the robot's previous trajectory, from whose present position and velocity it continues;
-/// otherwise it starts at the joints' targets, or at their positions if they have none.
+/// Makes the controller's targets follow a trajectory, evaluated at the controller's rate. It
+/// replaces the trajectories of these joints, from whose present positions and velocities it
+/// continues; joints without one start at their targets, or at their positions if they have none.
+/// Other joints continue to follow theirs. It also replaces trajectories that were posted before it
+/// for a later step and move one of these joints.
 struct FollowTrajectory {
   Robot robot;
   std::vector<Joint> joints;  ///< as in SetJointCommand
   JointTrajectory trajectory;
+  int64_t tag = 0;  ///< copied to ActiveTrajectory, where its sender recognizes it
 };
-/// Ends the robot's trajectory; its joints hold their present positions.
+/// Ends the trajectories of a robot's joints, which hold their present positions, and discards
+/// trajectories that were posted earlier and have not started. Every client may post it, also while
+/// another one has claimed the robot.
 struct StopTrajectory {
   Robot robot;
+  std::vector<Joint> joints = {};  ///< empty = all
 };
 
 }  // namespace gloam

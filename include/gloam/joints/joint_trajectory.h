@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -27,8 +28,8 @@ enum class TrajectoryProfile : uint8_t {
   /// velocities, else linear.
   kSpline,
   /// From point to point along straight lines in joint space, at rest in each: trapezoidal
-  /// velocity,
-  /// as fast as max_velocity and max_acceleration allow. All joints arrive at the same time.
+  /// velocity, as fast as max_velocity and max_acceleration allow. All joints arrive at the same
+  /// time.
   kTrapezoidal,
   /// The same with quintic polynomials, which also start and end without acceleration.
   kQuintic,
@@ -51,21 +52,24 @@ struct JointSample {
   double position = 0, velocity = 0, acceleration = 0;
 };
 
-/// A trajectory as polynomials in time. make() allocates; all other functions do not.
+/// A trajectory as polynomials in time. make() allocates; all other functions do not. Everything
+/// after the first point is immutable and shared by copies, so a copy and begin() cost the same for
+/// trajectories of any length.
 class JointPath {
  public:
   /// Errors: no points, or more than 100,000; times that are negative or do not increase; vectors
   /// whose sizes are neither 0 nor `joints`; numbers that are not finite; missing or non-positive
   /// limits; limits for kSpline.
   static Result<JointPath> make(const JointTrajectory& trajectory, size_t joints);
+  /// The errors of make().
+  static Status check(const JointTrajectory& trajectory, size_t joints);
 
   /// Starts at these samples, one per joint. kTrapezoidal and kQuintic first brake from the initial
   /// velocity within max_acceleration.
   void begin(std::span<const JointSample> start);
-  double duration() const {
-    return duration_;
-  }  ///< [s]; of kTrapezoidal and kQuintic after begin()
-  size_t joints() const { return joints_; }
+  /// [s]; of kTrapezoidal and kQuintic after begin().
+  double duration() const { return duration_; }
+  size_t joints() const;
   /// Sample of a joint at a time after the start [s]; rests at the last point afterwards.
   JointSample at(double time, size_t joint) const;
   /// Index of the point that is approached at a time; the last one afterwards.
@@ -74,33 +78,33 @@ class JointPath {
  private:
   using Polynomial = std::array<double, 6>;  ///< coefficients, by power of the time in the piece
   struct Piece {
-    double length = 0, end = 0;  ///< [s]; `end` is after the start
+    double length = 0, end = 0;  ///< [s]
     size_t point = 0;            ///< that it approaches
   };
+  struct Plan;  ///< from the first point on
+  struct Place {
+    const Piece* piece;
+    const Polynomial* polynomials;  ///< (joints)
+    double time;                    ///< in the piece [s]
+  };
   JointPath() = default;
-  std::span<Polynomial> polynomials(size_t piece) {
-    return {polynomials_.data() + piece * joints_, joints_};
-  }
-  size_t piece_at(double time) const;
-  void set_spline(size_t piece, std::span<const JointSample> from, const TrajectoryPoint& to);
+  Place place_at(double time) const;
   void set_brake(std::span<const JointSample> start);
-  void set_line(size_t point, std::span<const double> from);
-  void set_ends();
 
-  TrajectoryProfile profile_ = TrajectoryProfile::kSpline;
-  size_t joints_ = 0, pieces_per_line_ = 1;
+  std::shared_ptr<const Plan> plan_;
+  std::vector<Piece> start_;              ///< until the first point; their ends are after the start
+  std::vector<Polynomial> start_motion_;  ///< (start pieces x joints)
+  std::vector<double> rest_;              ///< where it has braked, (joints)
+  double reached_ = 0;                    ///< time of the first point [s]
+  double shift_ = 0;                      ///< added to the ends of the plan's pieces [s]
   double duration_ = 0;
-  std::vector<TrajectoryPoint> points_;
-  std::vector<double> max_velocity_, max_acceleration_;  ///< (joints)
-  std::vector<double> rest_;                             ///< where it has braked, (joints)
-  std::vector<Piece> pieces_;
-  std::vector<Polynomial> polynomials_;  ///< (pieces x joints)
 };
 
-/// The trajectory that a robot follows in a simulation.
+/// A trajectory that joints of a robot follow in a simulation.
 struct ActiveTrajectory {
-  std::vector<Joint> joints;  ///< in the order of the path's
+  std::vector<Joint> joints;  ///< in the order of the path's; some may have left it
   JointPath path;
+  int64_t tag = 0;          ///< of FollowTrajectory
   int64_t start_step = -1;  ///< step before which it was started
   double start_time = 0;    ///< simulation time of that step [s]
   JointSample at(double time, size_t joint) const { return path.at(time - start_time, joint); }

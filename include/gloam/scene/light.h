@@ -3,12 +3,14 @@
 // docs/light.md has examples.
 
 #include <array>
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "gloam/result.h"
+#include "gloam/text.h"
 #include "gloam/types.h"
 
 namespace gloam {
@@ -76,12 +78,32 @@ struct BlackoutOptions {
   SourceLoc loc = {};
 };
 
+/// Shape of a lamp (docs/light.md).
+enum class LightType : uint8_t { kPoint, kSpot, kDirectional, kRect, kDisk, kSphere, kMesh };
+template <>
+struct EnumTable<LightType> {
+  static constexpr const char* kNoun = "light type";
+  static constexpr auto kNames =
+      std::to_array<EnumName<LightType>>({{LightType::kPoint, "point"},
+                                          {LightType::kSpot, "spot"},
+                                          {LightType::kDirectional, "directional"},
+                                          {LightType::kRect, "rect"},
+                                          {LightType::kDisk, "disk"},
+                                          {LightType::kSphere, "sphere"},
+                                          {LightType::kMesh, "mesh"}});
+};
+
+/// Whether the lamp is a luminous surface.
+constexpr bool is_area_light(LightType type) {
+  return type != LightType::kPoint && type != LightType::kSpot && type != LightType::kDirectional;
+}
+
 /// [[light]]: a lamp added to the scene, shining along its own -Z. Its strength is given by exactly
 /// one of intensity, flux, luminance and illuminance; with `ies` it can be omitted, and is then
 /// that of the file.
 struct LightOptions {
   std::string name = {};                 ///< unique
-  std::string type = {};                 ///< point spot directional rect disk sphere mesh
+  std::optional<LightType> type = {};    ///< point spot directional rect disk sphere mesh
   std::string body = {};                 ///< full name of the body it is fixed to; empty = world
   Vec3 position = {};                    ///< in the frame of `body` [m]
   std::optional<Vec3> look_at = {};      ///< target point, in the same frame [m]

@@ -1,5 +1,5 @@
 #pragma once
-// Settings of a run: [sim], [render], [record] and options drawn at random ([[randomize]]). Part of
+// Settings of a run: [sim], [record] and options drawn at random ([[randomize]]). Part of
 // gloam/scene.h.
 
 #include <cstdint>
@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "gloam/result.h"
+#include "gloam/scene/render.h"
 #include "gloam/scene/robot.h"
 
 namespace gloam {
@@ -21,42 +22,6 @@ struct SimOptions {
   /// for live runs, fast for others.
   std::string pace = {};
   SourceLoc loc = {};
-};
-
-/// [render]: rendering of images.
-struct RenderOptions {
-  /// path | interactive | direct (docs/light.md); empty = interactive for cameras that open while
-  /// the simulation runs in real time, path for others.
-  std::string tier = {};
-  std::optional<int> spp = {};  ///< samples per pixel, 1 … 65536; with `error` the maximum, from 16
-  /// Error bound of the path tier: each pixel is sampled until its standard error is this fraction
-  /// of its value, 0.0001 … 1 (docs/light.md); empty = the same number of samples in every pixel.
-  std::optional<double> error = {};
-  /// Path vertices after the camera, 1 … 64; empty = 5, or 24 with media, where fog is white due to
-  /// multiple scattering, and in the interactive tier.
-  std::optional<int> max_depth = {};
-  /// cpu | cuda | auto (an NVIDIA GPU if this build and this machine support one, otherwise the
-  /// CPU).
-  std::string device = "auto";
-  bool denoise = true;  ///< except in the interactive tier, which has its own filter
-  /// auto | studio | model: light for models without lights. studio: a soft sky, a key light and a
-  /// floor, only in colour images; model: the lights of MuJoCo; auto: studio for models without
-  /// lamps and sky (docs/light.md).
-  std::string look = "auto";
-  /// Exposure value at ISO 100; empty = determined by the scene (docs/light.md).
-  std::optional<double> ev100 = {};
-  /// Rendered groups of geoms, skins, flexes, tendons and sites, 0 … 5; empty = 0 to 2, and the
-  /// collision shapes of bodies that have no other geoms
-  std::vector<int> groups = {};
-  bool sites = false;  ///< render sites; only cameras see them
-  SourceLoc loc = {};
-
-  /// tier, or the default one.
-  std::string tier_or_default(bool real_time) const {
-    return !tier.empty() ? tier : (real_time && !error ? "interactive" : "path");
-  }
-  /// spp; if it is empty, 4, or 4096 with `error`.
-  int samples() const { return spp.value_or(error ? 4096 : 4); }
 };
 
 /// [record]: recorded outputs of a run.

@@ -35,7 +35,7 @@ class VariantJob:
         made = gloam.replay(self.log).variants(
             self.randomize, 1, folder.parent / f"{folder.name}-all", first_seed=seed, progress=False, **self.options
         )
-        Path(made[0]["out"]).rename(folder)
+        made[0].out.rename(folder)
         shutil.rmtree(folder.parent / f"{folder.name}-all")
         return {}
 

@@ -160,6 +160,7 @@ class _DeclaredWorld(TaskWorld):
     def close(self) -> None:
         for source in self._sources.values():
             source.close()
+        self._metrics.close()
 
 
 def make_env(

@@ -73,15 +73,9 @@ class LidarSource(Source):
     def __init__(self, sim: gloam.Simulation, lidar: str, rings: int, columns: int, far: float) -> None:
         self._lidar = sim.lidars[lidar].open(required=True)
         self._shape, self._far = (rings, columns), far
-        self._last: Any = None
-
-    def begin(self) -> None:
-        self._last = None
 
     def read(self) -> Array:
-        for scan in self._lidar.waiting():
-            self._last = scan
-        scan = self._last
+        scan = self._lidar.latest()
         if scan is None:
             raise gloam.UsageError(
                 f"no scan of '{self._lidar.name}' has ended yet", hint="settle for at least 1 / rate"
@@ -95,13 +89,26 @@ class LidarSource(Source):
 
 
 class SensorSource(Source):
-    """Numbers of a MuJoCo sensor, without the errors of a [[sensor]] table."""
+    """Numbers of a MuJoCo sensor, without the errors of a [[sensor]] table, or of the last sample of a probe.
+
+    Errors: UsageError if a probe has not been sampled yet.
+    """
 
     def __init__(self, sim: gloam.Simulation, sensor: str) -> None:
         self._sensor = sim.sensors[sensor]
+        self._probe = self._sensor.open() if sensor in sim.world.probes else None
 
     def read(self) -> Array:
-        return np.array(self._sensor.values)
+        if self._probe is None:
+            return np.array(self._sensor.values)
+        sample = self._probe.latest()
+        if sample is None:
+            raise gloam.UsageError(f"probe '{self._sensor.name}' has not been sampled yet", hint="increase its rate, or settle for longer")
+        return np.array(sample.values)
+
+    def close(self) -> None:
+        if self._probe is not None:
+            self._probe.close()
 
 
 class JointSource(Source):
@@ -124,19 +131,14 @@ class TopicSource(Source):
     def __init__(self, sim: gloam.Simulation, topic: str, field: str) -> None:
         self._topic, self._field = topic, field
         self._stream = sim.subscribe([topic])
-        self._last: Any = None
-
-    def begin(self) -> None:
-        self._last = None
 
     def read(self) -> Array:
-        for message in self._stream:
-            self._last = message
-        if self._last is None:
+        message = self._stream.latest()
+        if message is None:
             raise gloam.UsageError(
                 f"topic '{self._topic}' has not published a message yet", hint="increase its rate, or settle for longer"
             )
-        value: Any = self._last.decode()
+        value: Any = message.decode()
         for part in self._field.split(".") if self._field else []:
             if not isinstance(value, Mapping) or part not in value:
                 raise gloam.NotFoundError(f"a message of '{self._topic}' has no field '{self._field}'")
@@ -148,30 +150,37 @@ class TopicSource(Source):
 
 
 class Metrics:
-    """Metrics of one simulation, from the last message of the topic /metrics: 10 per second, or at the rate of a
-    [[topic]]."""
+    """Metrics of one simulation, sampled at record.metrics_rate."""
 
     def __init__(self, sim: gloam.Simulation) -> None:
         self._sim = sim
         self._step = -1
+        self._stream: gloam.MetricStream | None = None
         self._values: dict[str, float] = {}
 
     def begin(self) -> None:
-        """Begins an episode: they count from now on."""
-        self._values = self._sim.metrics
+        """Begins an episode: they count from the first call and from each reset."""
+        if self._stream is None:
+            self._stream = self._sim.open_metrics()
+        self._values = self._stream.latest()
         self._step = self._sim.step_count
 
     def value(self, name: str) -> float:
         """Present value; NaN if it has none now. Errors: NotFoundError for an unknown name."""
         step = self._sim.step_count
         if step != self._step:
-            self._values = self._sim.metrics
-            self._step = step
+            self.begin()
         if name not in self._values:
-            names = [metric["name"] for metric in self._sim.world.metrics()]
+            names = [metric.name for metric in self._sim.world.metrics()]
             if name not in names:
                 raise gloam.NotFoundError(f"there is no metric '{name}'", hint=f"one of: {', '.join(names)}")
         return float(self._values.get(name, math.nan))
+
+    def close(self) -> None:
+        """Ends the stream."""
+        if self._stream is not None:
+            self._stream.close()
+            self._stream = None
 
 
 class MetricSource(Source):

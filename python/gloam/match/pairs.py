@@ -119,8 +119,8 @@ def scene_points(sim: gloam.Simulation, pairs: Sequence[Pair]) -> Array:
 
 
 def _place(sim: gloam.Simulation, pair: Pair) -> Array:
-    names = {"geom": "geoms", "body": "bodies", "site": "sites"}[pair.kind]
-    known = list(sim.world.info[names])
+    info = sim.world.info
+    known = {"geom": info.geoms, "body": info.bodies, "site": info.sites}[pair.kind]
     if pair.element not in known:
         raise gloam.NotFoundError(f"pair '{pair.name}': the scene has no {pair.kind} '{pair.element}'",
                                   hint=_core.suggest_name(pair.element, [name for name in known if name]))  # fmt: skip

@@ -76,4 +76,4 @@ def has_light(sim: gloam.Simulation) -> bool:
     places = set(tables.get("environment", {})) - {"file", "up", "unit", "colliders", "clash"}  # generators bring lamps and a sky
     emission = np.asarray(sim.memory.array("mat_emission"))
     glows = bool(emission.size and emission.max() > 0) or any("emission" in material for material in tables.get("material", []))
-    return bool(places or LIGHTS & set(tables) or sim.world.info["lights"] or glows)
+    return bool(places or LIGHTS & set(tables) or sim.world.info.lights or glows)

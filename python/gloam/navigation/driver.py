@@ -7,7 +7,7 @@ import operator
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 
@@ -16,6 +16,7 @@ import gloam
 from .follower import WaypointFollower
 from .planner import Answer, Arrived, Observation, Planner, Task, Velocity, Waypoints
 
+T = TypeVar("T")
 WATCH_PERIOD = 0.05  # between two calls of a run's watch [s]
 _STOP = Velocity()
 _LONGEST_ERROR = 300  # characters
@@ -70,7 +71,6 @@ class Driver:
         self.stats = PlannerStats()
         self.has_arrived = False
         self._sim = sim
-        self._last: dict[str, Any] = {}
         self._robot = sim.robots[rig.robot]
         if not (0 < planner.rate < math.inf and 0 <= planner.latency < math.inf):
             raise gloam.UsageError(f"a planner needs a rate above 0 and a latency of at least 0 s, got {planner.rate} Hz and {planner.latency} s")
@@ -78,7 +78,7 @@ class Driver:
         self._camera = self._open_camera() if planner.needs & {"image", "depth"} else None
         self._lidar = self._open_lidar() if "scan" in planner.needs else None
 
-    def _open_camera(self) -> gloam.Camera:
+    def _open_camera(self) -> gloam.CameraStream:
         if not self.rig.camera:
             raise gloam.UsageError(f"planner {type(self.planner).__name__} needs a camera, and the robot has none")
         outputs = [output for need, output in (("image", "rgb"), ("depth", "depth")) if need in self.planner.needs]
@@ -87,7 +87,7 @@ class Driver:
             outputs, width=width, height=height, rate=self.planner.rate, **self.rig.render
         )
 
-    def _open_lidar(self) -> gloam.Lidar:
+    def _open_lidar(self) -> gloam.LidarStream:
         if not self.rig.lidar:
             raise gloam.UsageError(f"planner {type(self.planner).__name__} needs a LiDAR, and the robot has none")
         return self._sim.lidars[self.rig.lidar].open()
@@ -141,18 +141,14 @@ class Driver:
             self._sim.time, (float(pose.p[0]), float(pose.p[1]), float(pose.yaw)), (float(vx), float(vy), rate), image, depth, scan
         )
 
-    def _newest(self, source: Any) -> Any:
+    @staticmethod
+    def _newest(stream: gloam.Stream[T]) -> T:
         """The last message that is complete at this instant; steps on to the first one if there is none yet."""
-        newest = self._last.get(source.name)
-        for newest in source.waiting():
-            pass
-        if newest is None:
-            newest = self._sim.step_until(source)
-        self._last[source.name] = newest
-        return newest
+        newest = stream.latest()
+        return stream.next() if newest is None else newest
 
     @staticmethod
-    def _in_robot_frame(scan: Any, pose: gloam.Pose) -> Any:
+    def _in_robot_frame(scan: gloam.Scan, pose: gloam.Pose) -> Any:
         points = np.asarray(scan.points, dtype=np.float64)
         world = points @ np.asarray(scan.pose.R).T + np.asarray(scan.pose.p)
         cosine, sine = math.cos(pose.yaw), math.sin(pose.yaw)
@@ -187,9 +183,9 @@ class Driver:
 
     def close(self) -> None:
         """Closes the streams and the planner."""
-        for source in (self._camera, self._lidar):
-            if source is not None:
-                source.close()
+        for stream in (self._camera, self._lidar):
+            if stream is not None:
+                stream.close()
         self.planner.close()
 
 

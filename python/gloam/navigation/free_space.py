@@ -31,7 +31,7 @@ def free_space(
     free space; on the ground of a terrain, heights are above it, and Ground.is_hard() blocks slopes and water.
     Errors: UsageError if there are no walls, or no room between them.
     """
-    ground = None if any(_FLOOR.search(name) for name in world.info["geoms"]) else Ground.of(world)
+    ground = None if any(_FLOOR.search(name) for name in world.info.geoms) else Ground.of(world)
     boxes, floors = _boxes(world, ignore, heights, ground)
     corners = ground.corners if ground else (floors if len(floors) > 0 else boxes).reshape(-1, 2)
     if len(corners) == 0:
@@ -82,7 +82,7 @@ def _boxes(
         kind, contype, affinity, body, aabb, position, rotation = (np.array(sim.memory.array(name)) for name in fields)
     signs = np.array([[i, j, k] for k in (-1, 1) for i, j in ((-1, -1), (1, -1), (1, 1), (-1, 1))])
     boxes, floors = [], []
-    for geom, name in enumerate(world.info["geoms"]):
+    for geom, name in enumerate(world.info.geoms):
         if kind[geom] in (_PLANE, _HFIELD) or int(body[geom]) in ignore:
             continue
         local = aabb[geom, :3] + signs * aabb[geom, 3:]

@@ -48,7 +48,7 @@ class Ground:
         x, y, top = (float(v) for v in sim.memory.array("hfield_size")[field][:3])
         shares = np.array(sim.memory.array("hfield_data")[first : first + rows * columns], dtype=np.float64)
         middle = places[geom]
-        wet = [i for i, name in enumerate(sim.world.info["geoms"]) if _WATER.search(name)]
+        wet = [i for i, name in enumerate(sim.world.info.geoms) if _WATER.search(name)]
         reach = np.abs(np.einsum("nij,nj->ni", turns[wet].reshape(-1, 3, 3), boxes[wet, 3:]))
         center = places[wet] + np.einsum("nij,nj->ni", turns[wet].reshape(-1, 3, 3), boxes[wet, :3])
         water = np.concatenate([(center - reach)[:, :2], center + reach], axis=1)

@@ -163,8 +163,8 @@ def _flat(base: gloam.Scene, cameras: list[dict[str, Any]], say: Tell) -> list[d
     """
     albedo: dict[str, list[Any]] = {}
     with gloam.Simulation(base.compile()) as sim:
-        material_of = {label["part"]: label["material"] for label in sim.labels()}
-        names = sim.world.info["materials"]
+        material_of = {label.part: label.material for label in sim.labels()}
+        names = sim.world.info.materials
         roughness = dict(zip(names, np.array(sim.memory.array("mat_roughness")).tolist(), strict=True))
         with_image = {name for name, row in zip(names, np.array(sim.memory.array("mat_texid")), strict=True) if (row >= 0).any()}
         for camera in cameras:

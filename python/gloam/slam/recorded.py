@@ -34,14 +34,14 @@ def examine(log: Path, camera: str, plan: Path) -> tuple[Sensors, float]:
     """
     recorded = gloam.replay(log)
     file = str(log)
-    if recorded.info["damage"]:
-        raise gloam.InputError(f"the log is damaged: {recorded.info['damage']}", file, hint=f"gloam recover {log} -o whole.mcap")
-    if not recorded.info["has_run"]:
+    if recorded.info.damage:
+        raise gloam.InputError(f"the log is damaged: {recorded.info.damage}", file, hint=f"gloam recover {log} -o whole.mcap")
+    if not recorded.info.has_run:
         raise gloam.InputError("the log has no run of Gloam that can be replayed", file)
     if recorded.duration < SHORTEST:
         raise gloam.InputError(f"the run lasts {recorded.duration:.2g} s; a tour needs {SHORTEST:g} s", file)
-    with recorded.at(recorded.info["start"]) as sim:
-        sensors = _sensors(sim, camera, float(recorded.info["start"]))
+    with recorded.at(recorded.info.start) as sim:
+        sensors = _sensors(sim, camera, recorded.info.start)
         keep_plan(sim.world, next(iter(sim.world.robots), ""), plan)
     length = _path(recorded, sensors.left)
     if length < LEAST_PATH:
@@ -63,11 +63,13 @@ def _sensors(sim: gloam.Simulation, camera: str, begin: float) -> Sensors:
         raise gloam.NotFoundError(f"robot '{robot}' has no camera; there are: {known}", hint="name one with --camera")
     pair, _, eye = left.rpartition("/")
     is_pair = pair in pairs and eye == "left"
+    table = f"stereo.{pair}" if is_pair else f"camera.{left}"
     clutter = next((value for path, value in options.items() if re.fullmatch(r"environment\.[^.]+\.clutter", path)), None)
     return Sensors(
         left, f"{pair}/right" if is_pair else "", float(options[f"stereo.{pair}.baseline"]) if is_pair else 0.0,
         next(iter(world.lidars), ""), "", begin, _PROBE, _probe(sim, left), clutter,
         any(path.startswith(("agent.", "crowd.")) for path in options),
+        any(path.startswith(f"{table}.stereo_depth.") for path in options),
     )  # fmt: skip
 
 

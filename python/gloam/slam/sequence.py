@@ -52,7 +52,8 @@ def make_sequence(log: Path, condition: Condition, folder: Path, sensors: Sensor
     The robot moves as in the log under every condition. Errors: as gloam.Log.replay; OSError.
     """
     work = folder / "replay"
-    outputs = ["png", "depth_png", "sensors", *(["lidar"] if condition.has_lidar else [])]
+    depth = "sensor_depth_png" if sensors.has_depth_camera else "depth_png"
+    outputs = ["png", depth, "sensors", *(["lidar"] if condition.has_lidar else [])]
     cameras = [sensors.left, *([sensors.right] if condition.has_stereo else [])]
     request: dict[str, Any] = {"width": condition.width, "height": condition.height, "rate": condition.rate, "cameras": cameras}
     if condition.duration is not None:
@@ -91,7 +92,7 @@ def _write(log: gloam.Log, work: Path, condition: Condition, folder: Path, senso
     left = work / sensors.left.replace("/", "_")
     poses = _table(left / "poses.csv")
     kept = [row for row in poses if row["time_s"] >= sensors.begin - 1e-9]
-    sources = {"rgb": left / "rgb", "depth": left / "depth"}
+    sources = {"rgb": left / "rgb", "depth": left / ("sensor_depth" if sensors.has_depth_camera else "depth")}
     if condition.has_stereo:
         sources["right"] = work / sensors.right.replace("/", "_") / "rgb"
     for kind, source in sources.items():
@@ -135,7 +136,7 @@ def _calibration(log: gloam.Log, work: Path, condition: Condition, sensors: Sens
 def _imu_in_camera(log: gloam.Log, sensors: Sensors) -> Array:
     """(4, 4): pose of the IMU in the optical frame of the left camera."""
     with log.at(sensors.begin) as sim:
-        number = list(sim.world.info["sites"]).index(f"{ROBOT}/imu")
+        number = sim.world.info.sites.index(f"{ROBOT}/imu")
         imu = np.eye(4)
         imu[:3, :3] = np.array(sim.memory.array("site_xmat"))[number].reshape(3, 3)
         imu[:3, 3] = np.array(sim.memory.array("site_xpos"))[number]

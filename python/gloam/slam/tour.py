@@ -33,7 +33,8 @@ _STAND = 0.3  # the trunk's height above the ground at the start [m]
 class Sensors:
     """Of the robot of a log, by their names. left, right: cameras, right = "": one camera; baseline: [m]; lidar: "" = none; imu:
     topic, "" = none; begin: of the sequence in the log [s]; probe: of the visibility; overlay: text of a scene file that adds
-    it, "" = the log has it; clutter: of the place, which levels must not change, None = none; has_people: in the run."""
+    it, "" = the log has it; clutter: of the place, which levels must not change, None = none; has_people: in the run;
+    has_depth_camera: the left camera has a depth sensor's model, else methods read the true depth."""
 
     left: str
     right: str
@@ -45,10 +46,11 @@ class Sensors:
     overlay: str
     clutter: float | None
     has_people: bool
+    has_depth_camera: bool = False
 
 
 # 0.5 is the clutter of all generated places, by default.
-TOUR_SENSORS = Sensors(LEFT, RIGHT, BASELINE, LIDAR, IMU_TOPIC, BEGIN, PROBE, "", 0.5, False)
+TOUR_SENSORS = Sensors(LEFT, RIGHT, BASELINE, LIDAR, IMU_TOPIC, BEGIN, PROBE, "", 0.5, False, has_depth_camera=True)
 
 
 @dataclass(frozen=True)
@@ -63,7 +65,8 @@ class Tour:
 
 
 def tour_scene(place: str, environment: dict[str, Any] | None = None) -> gloam.Scene:
-    """A place in clear air with the quadruped, its walking policy, a stereo camera in its face, a LiDAR and an IMU.
+    """A place in clear air with the quadruped, its walking policy, a stereo camera in its face whose left eye is also the
+    reference of a depth camera, a LiDAR and an IMU.
 
     environment: table of a place that is none of the benchmark's. Errors: NotFoundError for an unknown place.
     """
@@ -74,7 +77,7 @@ def tour_scene(place: str, environment: dict[str, Any] | None = None) -> gloam.S
     pixel = {"full_well": 10500, "quantum_efficiency": 0.62, "pitch": 2.2, "shot_noise": True, "read_noise": 2.4, "bits": 10}
     camera: dict[str, Any] = {
         "width": 640, "height": 480, "rate": 20, "fovy": 60,
-        "imager": {"exposure": {"f_number": 2.0}, "auto_exposure": exposure, "pixel": pixel},
+        "imager": {"exposure": {"f_number": 2.0}, "auto_exposure": exposure, "pixel": pixel}, "stereo_depth": {"preset": "d435"},
     }  # fmt: skip
     tables: dict[str, Any] = {
         "scene": {"name": place},

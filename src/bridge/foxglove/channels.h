@@ -1,15 +1,13 @@
 #pragma once
-// Channels: the topics that clients can subscribe to. A topic is opened for its first subscriber
-// and closed after its last one. All topics of a camera are one stream, so that it is rendered
-// once.
+// Channels: the topics that clients can subscribe to, and who has subscribed to them. All clients
+// share one subscription.
 
-#include <atomic>
+#include <cstdint>
+#include <functional>
 #include <map>
 #include <memory>
 #include <mutex>
-#include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "bridge/foxglove/client_messages.h"
@@ -24,79 +22,60 @@ struct ChannelChange {
   std::vector<uint64_t> removed;
 };
 
-class Channels {
+/// Any thread, after open().
+class Channels final : private TopicSink {
  public:
   /// `offered`: names or patterns of topics; empty = all.
   Channels(Simulation& simulation, std::vector<std::string> offered, Counters& counters)
       : simulation_(simulation), offered_(std::move(offered)), counters_(counters) {}
-  ~Channels();
 
-  // Any thread.
+  /// `on_change` is called after recompiles that change the channels; `announcing` is held from the
+  /// change to its end. Error: topics that cannot be listed.
+  Status open(std::mutex& announcing, std::function<void(const ChannelChange&)> on_change);
+  /// Nothing is delivered after it.
+  void close() { subscription_.reset(); }
+
   std::vector<ChannelInfo> list() const;
   /// Names of topics with the clients that subscribe to them.
   std::map<std::string, std::vector<int64_t>> subscribers() const;
-  int64_t dropped() const { return dropped_; }  ///< by the simulation's streams
+  int64_t dropped() const { return subscription_ != nullptr ? subscription_->dropped() : 0; }
 
-  // One thread; settle() comes after the others.
-  /// Takes the topics of the World that runs. Error: that World's topics cannot be listed.
-  Result<ChannelChange> follow();
   void subscribe(const ClientPtr& client, const SubscribeMessage& message);
   void unsubscribe(const ClientPtr& client, const UnsubscribeMessage& message);
   void leave(const ClientPtr& client);
-  /// Opens and closes the streams that the calls before ask for; may take seconds.
-  void settle();
 
  private:
-  struct Channel {
-    ChannelInfo info;
-    bool is_latched = false;
-    std::string feed;  ///< key of the stream that serves it
-  };
   struct Reader {
     ClientPtr client;
     uint32_t subscription = 0;
   };
-  /// Readers of one topic.
-  struct Outlet {
-    bool is_latched = false;
-    std::vector<Reader> readers;
-    std::optional<std::pair<double, Payload>> latched;  ///< the last message and its time [s]
-  };
-  /// A stream and the topics that it serves.
-  struct Feed {
-    std::mutex mutex;  // guards the outlets
-    std::map<std::string, Outlet> outlets;
-    std::atomic<bool> has_ended{false};
-    std::vector<std::string> open_topics;  // of the stream
-    std::unique_ptr<TopicStream> stream;   // last: its callbacks use the others
-  };
 
-  std::optional<Channel> find(uint64_t id) const;
-  ChannelInfo add_channel(const TopicInfo& topic, const MessageInfo& type);
-  void remove_channel(uint64_t id);
+  void on_message(const TopicMessage& message) override;
+  void on_topics(std::span<const TopicInfo> topics) override;
+  void on_error(const std::string& topic, const Error& why) override;
+
+  Result<ChannelChange> change(std::span<const TopicInfo> topics);
   Status add_reader(const ClientPtr& client, const SubscribeMessage::Item& item);
-  void remove_reader(uint64_t channel, const ClientPtr& client);
-  void settle(Feed* feed);
-  void close(Feed* feed);
-  void deliver(Feed* feed, const TopicMessage& message);
-  static void tell_readers(Feed* feed, const Error& why);
-  void note_subscribers();
+  /// Returns the number of readers that fit and are removed.
+  template <class Fits>
+  size_t remove_readers(const Fits& fits);
+  std::vector<Reader> readers_of(const std::string& topic) const;
+  void send(const Reader& reader, const TopicMessage& message, const Payload& payload);
+  void follow_readers();
 
   Simulation& simulation_;
   const std::vector<std::string> offered_;
   Counters& counters_;
-  std::atomic<int64_t> dropped_{0};
+  std::mutex* announcing_ = nullptr;
+  std::function<void(const ChannelChange&)> on_change_;
+  Status topics_status_;  // of the last on_topics()
 
-  mutable std::mutex mutex_;  // guards these two
-  std::map<uint64_t, Channel> channels_;
-  std::map<std::string, std::vector<int64_t>> subscribers_;
-
-  // The one thread's.
-  std::shared_ptr<const CompiledWorld> world_;
+  mutable std::mutex mutex_;  // guards these
   uint64_t last_id_ = 0;
   std::map<std::string, uint64_t> schema_ids_;
-  std::map<int64_t, std::map<uint32_t, uint64_t>> subscriptions_;  // channels by client and id
-  std::map<std::string, std::unique_ptr<Feed>> feeds_;
+  std::map<uint64_t, ChannelInfo> channels_;            // by id
+  std::map<std::string, std::vector<Reader>> readers_;  // by topic; no empty lists
+  std::unique_ptr<TopicSubscription> subscription_;     // last: its callbacks use the others
 };
 
 }  // namespace gloam::bridge::foxglove

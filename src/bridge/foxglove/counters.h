@@ -5,9 +5,12 @@
 #include <cstdint>
 #include <string>
 
-#include "bridge/foxglove/server.h"
+#include "bridge/foxglove/server_messages.h"
+#include "web/websocket_server.h"
 
 namespace gloam::bridge::foxglove {
+
+using web::ClientPtr;
 
 struct Counters {
   std::atomic<int64_t> out{0}, in{0}, refused{0};  ///< as of BridgeStats

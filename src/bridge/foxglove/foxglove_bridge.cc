@@ -3,18 +3,24 @@
 #include <chrono>
 #include <utility>
 
+#include "bridge/foxglove/handshake.h"
+
 namespace gloam::bridge::foxglove {
 namespace {
 
-constexpr int kTicksBetweenChecks = 4;  // ticks of the server, 50 ms each
+constexpr std::chrono::milliseconds kTick{50};
+constexpr int kTicksBetweenChecks = 4;
 
-ServerOptions server_options(const FoxgloveOptions& options, const std::string& token) {
-  ServerOptions server;
-  server.host = options.host;
-  server.port = options.port;
-  server.max_clients = options.max_clients;
-  server.token = token;
-  return server;
+web::ServerOptions server_options(const FoxgloveOptions& options) {
+  return {.host = options.host,
+          .port = options.port,
+          .port_hint = "try --port 0, or set bridge.foxglove.port in the scene",
+          .max_clients = options.max_clients,
+          .tick = kTick};
+}
+
+Protocol protocol_of(const ClientPtr& client) {
+  return choose_protocol(client->protocol).value_or(ProtocolChoice{}).protocol;
 }
 
 std::string session_name() {
@@ -36,19 +42,20 @@ FoxgloveBridge::FoxgloveBridge(const BridgeContext& context, const FoxgloveOptio
       graph_(simulation_, channels_, publishing_, services_),
       parameters_(context.operations, counters_),
       assets_(simulation_),
-      server_(server_options(options, context.token), *this) {
+      server_(server_options(options), *this) {
   if (player_ != nullptr) playback_.emplace(*player_, context.operations);
 }
 
 // From where the requests come to where they go, so that nobody calls one who is gone.
 FoxgloveBridge::~FoxgloveBridge() {
   server_.stop();
-  subscribing_.stop();
+  channels_.close();
   operating_.stop();
 }
 
 Status FoxgloveBridge::start() {
-  GLOAM_TRY_STATUS(channels_.follow());
+  GLOAM_TRY_STATUS(
+      channels_.open(clients_mutex_, [this](const ChannelChange& change) { advertise(change); }));
   told_time_ = simulation_.latest().time();
   return server_.listen();
 }
@@ -72,6 +79,10 @@ BridgeStats FoxgloveBridge::stats() const {
   return stats;
 }
 
+web::Answer FoxgloveBridge::answer(const web::RequestFacts& request) {
+  return admit(request, token_, web::is_loopback_name(host_));
+}
+
 void FoxgloveBridge::on_open(const ClientPtr& client) {
   std::optional<PlaybackRange> range;
   if (player_ != nullptr) range = PlaybackRange{player_->end()};
@@ -79,14 +90,13 @@ void FoxgloveBridge::on_open(const ClientPtr& client) {
     // No change of the channels may come between the list and the client's entry.
     const std::lock_guard lock(clients_mutex_);
     client->outbox.send(server_info(session_, range));
-    client->outbox.send(advertise(channels_.list(), client->protocol));
+    client->outbox.send(foxglove::advertise(channels_.list(), protocol_of(client)));
     clients_[client->id] = client;
   }
   client->outbox.send(advertise_services(services_.list()));
   client->outbox.send(time_message(simulation_.latest().time()));
   if (playback_)
-    do_later(operating_, client,
-             [this, client] { client->outbox.send(playback_state(playback_->state())); });
+    do_later(client, [this, client] { client->outbox.send(playback_state(playback_->state())); });
   graph_.note_change();
 }
 
@@ -97,10 +107,7 @@ void FoxgloveBridge::on_close(const ClientPtr& client) {
   }
   publishing_.leave(client);
   graph_.leave(client);
-  subscribing_.post_always([this, client] {
-    channels_.leave(client);
-    settle_subscriptions();
-  });
+  channels_.leave(client);
   operating_.post_always([this, client] { parameters_.leave(client); });
   graph_.note_change();
 }
@@ -121,29 +128,18 @@ void FoxgloveBridge::on_tick() {
     for (const auto& [id, client] : clients_) client->outbox.offer(time_message(time));
   }
   if (++ticks_ % kTicksBetweenChecks != 0) return;
-  subscribing_.post([this] { follow_world(); }, kFollowKey);
   operating_.post([this] { tell_changes(); }, kChangesKey);
   graph_.tell_changes();
 }
 
-void FoxgloveBridge::settle_subscriptions() {
-  if (subscribing_.is_idle()) channels_.settle();
-  graph_.note_change();
-}
-
-void FoxgloveBridge::follow_world() {
-  {
-    const std::lock_guard lock(clients_mutex_);
-    const auto change = channels_.follow();
-    if (change.ok() && !(change->added.empty() && change->removed.empty())) {
-      for (const auto& [id, client] : clients_) {
-        if (!change->removed.empty()) client->outbox.send(unadvertise(change->removed));
-        if (!change->added.empty()) client->outbox.send(advertise(change->added, client->protocol));
-      }
-      graph_.note_change();
-    }
+// With the mutex of the clients, so that none misses it.
+void FoxgloveBridge::advertise(const ChannelChange& change) {
+  for (const auto& [id, client] : clients_) {
+    if (!change.removed.empty()) client->outbox.send(unadvertise(change.removed));
+    if (!change.added.empty())
+      client->outbox.send(foxglove::advertise(change.added, protocol_of(client)));
   }
-  channels_.settle();
+  graph_.note_change();
 }
 
 void FoxgloveBridge::tell_changes() {

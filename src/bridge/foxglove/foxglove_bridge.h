@@ -1,11 +1,9 @@
 #pragma once
 // FoxgloveBridge: puts the parts together and knows who is connected.
 //
-//   streams -> Channels --------------------------------> clients' outboxes -> Server
-//   clients -> Server -> here (who may) -> Publishing                      (network's thread)
-//                                       -> Channels                        (worker of
-//                                       subscriptions)
-//                                       -> Services, Parameters, Playback  (worker of operations)
+//   topics -> Channels -------------------------------> clients' outboxes -> Server
+//   clients -> Server -> here (access)  -> Channels, Publishing             (network's thread)
+//                                       -> Services, Parameters, Playback   (worker)
 
 #include <atomic>
 #include <map>
@@ -13,6 +11,7 @@
 #include <optional>
 #include <string>
 
+#include "base/threads/worker.h"
 #include "bridge/bridge_list.h"
 #include "bridge/foxglove/assets.h"
 #include "bridge/foxglove/channels.h"
@@ -20,18 +19,17 @@
 #include "bridge/foxglove/parameters.h"
 #include "bridge/foxglove/playback.h"
 #include "bridge/foxglove/publishing.h"
-#include "bridge/foxglove/server.h"
 #include "bridge/foxglove/services.h"
-#include "bridge/worker.h"
+#include "web/websocket_server.h"
 
 namespace gloam::bridge::foxglove {
 
-class FoxgloveBridge final : public Bridge, private ServerEvents {
+class FoxgloveBridge final : public Bridge, private web::ServerEvents {
  public:
   FoxgloveBridge(const BridgeContext& context, const FoxgloveOptions& options);
   ~FoxgloveBridge() override;
 
-  /// Errors: topics that cannot be listed, those of Server::listen.
+  /// Errors: topics that cannot be listed, and the errors of WebSocketServer::listen.
   Status start();
 
   std::string name() const override { return "foxglove"; }
@@ -40,9 +38,10 @@ class FoxgloveBridge final : public Bridge, private ServerEvents {
   Status status() const override { return {}; }
 
  private:
-  enum Key : int64_t { kFollowKey = 1, kChangesKey, kPlaybackKey };
+  enum Key : int64_t { kChangesKey = 1, kPlaybackKey };
 
   // The network's thread.
+  web::Answer answer(const web::RequestFacts& request) override;
   void on_open(const ClientPtr& client) override;
   void on_text(const ClientPtr& client, std::string_view text) override;
   void on_binary(const ClientPtr& client, std::span<const uint8_t> bytes) override;
@@ -63,13 +62,13 @@ class FoxgloveBridge final : public Bridge, private ServerEvents {
   void obey(const ClientPtr& client, const FetchAssetMessage& message);
   void obey(const ClientPtr& client, const CallMessage& message);
   void obey(const ClientPtr& client, const PlaybackMessage& message);
-  /// Gives a job to a worker, or tells the client that too many wait.
-  void do_later(Worker& worker, const ClientPtr& client, Worker::Job job, int64_t key = 0);
+  /// Gives a job to the worker, or reports to the client that too many wait.
+  void do_later(const ClientPtr& client, Worker::Job job, int64_t key = 0);
 
-  // The workers' threads.
-  /// Streams are opened once for several changes that come in a row.
-  void settle_subscriptions();
-  void follow_world();
+  // The thread of the topics.
+  void advertise(const ChannelChange& change);
+
+  // The worker's thread.
   void tell_changes();
   void play(const ClientPtr& client, const PlaybackMessage& message);
   /// Only the asker, who may be null, is told of his request.
@@ -94,8 +93,8 @@ class FoxgloveBridge final : public Bridge, private ServerEvents {
   Assets assets_;
   std::optional<Playback> playback_;
   static constexpr size_t kMostJobs = 1024;  // that wait
-  Worker subscribing_{kMostJobs}, operating_{kMostJobs};
-  Server server_;
+  Worker operating_{kMostJobs, Overflow::kReject};
+  web::WebSocketServer server_;
 };
 
 }  // namespace gloam::bridge::foxglove

@@ -36,17 +36,13 @@ void FoxgloveBridge::take(const ClientPtr& client, const Result<ClientMessage>& 
 }
 
 void FoxgloveBridge::obey(const ClientPtr& client, const SubscribeMessage& message) {
-  do_later(subscribing_, client, [this, client, message] {
-    channels_.subscribe(client, message);
-    settle_subscriptions();
-  });
+  channels_.subscribe(client, message);
+  graph_.note_change();
 }
 
 void FoxgloveBridge::obey(const ClientPtr& client, const UnsubscribeMessage& message) {
-  do_later(subscribing_, client, [this, client, message] {
-    channels_.unsubscribe(client, message);
-    settle_subscriptions();
-  });
+  channels_.unsubscribe(client, message);
+  graph_.note_change();
 }
 
 void FoxgloveBridge::obey(const ClientPtr& client, const AdvertiseMessage& message) {
@@ -64,15 +60,15 @@ void FoxgloveBridge::obey(const ClientPtr& client, const PublishMessage& message
 }
 
 void FoxgloveBridge::obey(const ClientPtr& client, const GetParametersMessage& message) {
-  do_later(operating_, client, [this, client, message] { parameters_.get(client, message); });
+  do_later(client, [this, client, message] { parameters_.get(client, message); });
 }
 
 void FoxgloveBridge::obey(const ClientPtr& client, const SetParametersMessage& message) {
-  do_later(operating_, client, [this, client, message] { parameters_.set(client, message); });
+  do_later(client, [this, client, message] { parameters_.set(client, message); });
 }
 
 void FoxgloveBridge::obey(const ClientPtr& client, const WatchParametersMessage& message) {
-  do_later(operating_, client, [this, client, message] { parameters_.watch(client, message); });
+  do_later(client, [this, client, message] { parameters_.watch(client, message); });
 }
 
 void FoxgloveBridge::obey(const ClientPtr& client, const WatchGraphMessage& message) {
@@ -80,7 +76,7 @@ void FoxgloveBridge::obey(const ClientPtr& client, const WatchGraphMessage& mess
 }
 
 void FoxgloveBridge::obey(const ClientPtr& client, const FetchAssetMessage& message) {
-  do_later(operating_, client, [this, client, message] {
+  do_later(client, [this, client, message] {
     auto asset = assets_.fetch(message.uri);
     const bool ok = asset.ok();
     if (!ok) ++counters_.refused;
@@ -94,18 +90,17 @@ void FoxgloveBridge::obey(const ClientPtr& client, const CallMessage& message) {
   auto data = std::make_shared<std::vector<uint8_t>>(message.data.begin(), message.data.end());
   CallMessage call = message;
   call.data = *data;
-  do_later(operating_, client, [this, client, data, call] { services_.call(client, call); });
+  do_later(client, [this, client, data, call] { services_.call(client, call); });
 }
 
 void FoxgloveBridge::obey(const ClientPtr& client, const PlaybackMessage& message) {
   if (!playback_) return refuse_request(client, counters_, "no log is being replayed");
   // A slider that is dragged counts by its last place alone.
-  do_later(operating_, client, [this, client, message] { play(client, message); }, kPlaybackKey);
+  do_later(client, [this, client, message] { play(client, message); }, kPlaybackKey);
 }
 
-void FoxgloveBridge::do_later(Worker& worker, const ClientPtr& client, Worker::Job job,
-                              int64_t key) {
-  if (!worker.post(std::move(job), key)) refuse_request(client, counters_, kBusy);
+void FoxgloveBridge::do_later(const ClientPtr& client, Worker::Job job, int64_t key) {
+  if (!operating_.post(std::move(job), key)) refuse_request(client, counters_, kBusy);
 }
 
 }  // namespace gloam::bridge::foxglove

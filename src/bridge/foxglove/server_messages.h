@@ -10,9 +10,11 @@
 #include <string_view>
 #include <vector>
 
-#include "bridge/foxglove/outbox.h"
+#include "web/outbox.h"
 
 namespace gloam::bridge::foxglove {
+
+using web::Frame;
 
 /// Differs in how channels are advertised: with their schemas, or beside a list of schemas.
 enum class Protocol : uint8_t {

@@ -50,15 +50,15 @@ void Services::add(const std::string& name, const std::string& type, Answer answ
                     type,
                     {request->name, request->text},
                     {response->name, response->text}});
-  services_.push_back(std::make_shared<const Service>(
-      Service{std::move(answer), *std::move(request_schema), *std::move(response_schema)}));
+  services_.push_back({std::move(answer), *std::move(request_schema),
+                       std::make_shared<const MessageSchema>(*std::move(response_schema))});
 }
 
 void Services::add_trigger(const std::string& name, std::function<Status()> act) {
   add(name, "std_srvs/srv/Trigger",
       [act = std::move(act)](std::span<const uint8_t>, const Reply& reply) {
         const Status status = act();
-        std_srvs::Trigger_Response response{status.ok(), ""};
+        std_srvs::srv::Trigger_Response response{status.ok(), ""};
         if (!status.ok()) response.message = status.error().to_string();
         Bytes bytes;
         encode(response, &bytes);
@@ -69,7 +69,7 @@ void Services::add_trigger(const std::string& name, std::function<Status()> act)
 Result<Services::Bytes> Services::request_of(const CallMessage& message) const {
   if (message.service == 0 || message.service > services_.size())
     return Error{ErrorKind::kInput, "there is no service " + std::to_string(message.service)};
-  const Service& service = *services_[message.service - 1];
+  const Service& service = services_[message.service - 1];
   if (message.encoding == "json") {
     const auto object = web::parse_client_json(
         {reinterpret_cast<const char*>(message.data.data()), message.data.size()});
@@ -82,10 +82,10 @@ Result<Services::Bytes> Services::request_of(const CallMessage& message) const {
   return Bytes(message.data.begin(), message.data.end());
 }
 
-Result<Services::Bytes> Services::encode_answer(const Service& service, const std::string& encoding,
-                                                Bytes response) {
+Result<Services::Bytes> Services::encode_answer(const MessageSchema& type,
+                                                const std::string& encoding, Bytes response) {
   if (encoding == "cdr") return response;
-  GLOAM_TRY(const nlohmann::json answer, json_from_cdr(service.response, response));
+  GLOAM_TRY(const nlohmann::json answer, json_from_cdr(type, response));
   const std::string text = answer.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
   return Bytes(text.begin(), text.end());
 }
@@ -98,17 +98,19 @@ void Services::call(const ClientPtr& client, const CallMessage& message) {
   };
   const auto request = request_of(message);
   if (!request.ok()) return fail(request.error());
-  const auto service = services_[message.service - 1];
-  const Reply reply = [&counters = counters_, client, service, fail, id = message.service,
-                       call = message.call, encoding = message.encoding](Result<Bytes> response) {
-    auto answer = response.ok() ? encode_answer(*service, encoding, *std::move(response))
+  const Service& service = services_[message.service - 1];
+  // It does not hold the service, whose worker runs it: the worker must not end on its own thread.
+  const Reply reply = [&counters = counters_, client, type = service.response, fail,
+                       id = message.service, call = message.call,
+                       encoding = message.encoding](Result<Bytes> response) {
+    auto answer = response.ok() ? encode_answer(*type, encoding, *std::move(response))
                                 : Result<Bytes>(response.error());
     if (!answer.ok()) return fail(answer.error());
     ++counters.in;
     client->outbox.send(
         service_response(id, call, encoding, std::make_shared<const Bytes>(*std::move(answer))));
   };
-  service->answer(*request, reply);
+  service.answer(*request, reply);
 }
 
 }  // namespace gloam::bridge::foxglove

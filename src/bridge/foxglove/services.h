@@ -30,20 +30,20 @@ class Services {
   using Answer = std::function<void(std::span<const uint8_t> request, const Reply& reply)>;
   struct Service {
     Answer answer;
-    MessageSchema request, response;
+    MessageSchema request;
+    std::shared_ptr<const MessageSchema> response;  ///< shared with answers that come later
   };
   void add(const std::string& name, const std::string& type, Answer answer);
   /// A service without arguments.
   void add_trigger(const std::string& name, std::function<Status()> act);
   /// The request in CDR. Errors: no such service or encoding, a damaged request.
   Result<Bytes> request_of(const CallMessage& message) const;
-  static Result<Bytes> encode_answer(const Service& service, const std::string& encoding,
+  static Result<Bytes> encode_answer(const MessageSchema& type, const std::string& encoding,
                                      Bytes response);
 
   Counters& counters_;
   std::vector<ServiceInfo> infos_;  // ids are places in the list, from 1
-  // Shared: answers may come when a client has gone.
-  std::vector<std::shared_ptr<const Service>> services_;
+  std::vector<Service> services_;
 };
 
 }  // namespace gloam::bridge::foxglove

@@ -3,7 +3,7 @@
 #include "bridge/ros2/services/parameter_values.h"
 #include "ros/codec.h"
 #include "ros/messages/rcl_interfaces.h"
-#include "ros/messages/simulation_services.h"
+#include "ros/messages/simulation_interfaces.h"
 #include "ros/trajectory_check.h"
 
 /// Trajectories, parameters and requests of strangers.

@@ -137,7 +137,7 @@ Status Operator::set_speed(std::optional<double> speed) {
 }
 
 Status Operator::set_pace(std::string_view name) {
-  GLOAM_TRY(const Pace pace, pace_named(name));
+  GLOAM_TRY(const Pace pace, enum_named<Pace>(name));
   if (pace == Pace::kLockstep)
     return Error{ErrorKind::kInput,
                  "the pace 'lockstep' is not available in a live run",

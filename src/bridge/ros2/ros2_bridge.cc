@@ -22,7 +22,7 @@
 namespace gloam::bridge {
 namespace {
 
-constexpr auto kPollPeriod = std::chrono::milliseconds(100);  // at recompiles and silent masters
+constexpr auto kPollPeriod = std::chrono::milliseconds(100);  // at silent publishers of commands
 constexpr int kLargestDomain = 232;
 
 Result<int> domain_of(const Ros2Options& options) {
@@ -37,7 +37,7 @@ Result<int> domain_of(const Ros2Options& options) {
   return Error{ErrorKind::kUsage, std::string("ROS_DOMAIN_ID '") + given + "' must be 0 … 232"};
 }
 
-class Ros2Bridge final : public Bridge {
+class Ros2Bridge final : public Bridge, private TopicSink {
  public:
   Ros2Bridge(const BridgeContext& context, const Ros2Options& options)
       : simulation_(context.simulation), operations_(context.operations), options_(options) {}
@@ -48,6 +48,7 @@ class Ros2Bridge final : public Bridge {
     }
     wake_.notify_all();
     if (thread_.joinable()) thread_.join();
+    subscription_.reset();
     if (services_ != nullptr) services_->stop();
   }
 
@@ -61,13 +62,14 @@ class Ros2Bridge final : public Bridge {
                                       .network = options_.network,
                                       .node = ros_name(options_.node),
                                       .ns = ns}));
-    outlets_ = std::make_unique<TopicOutlets>(simulation_, *node_, [this] { look(); });
+    outlets_ = std::make_unique<TopicOutlets>(*node_, [this] { look(); });
     inlets_ = std::make_unique<TopicInlets>(simulation_, *node_);
     services_ = std::make_unique<ServiceServer>(*node_);
     offers_ = std::make_unique<NodeServices>(operations_, *node_, *services_);
     GLOAM_TRY_STATUS(
         offers_->open(options_.interfaces, ns == "/" ? "" : ns, ros_name(options_.node)));
-    GLOAM_TRY_STATUS(take_topics());
+    GLOAM_TRY(subscription_, simulation_.subscribe(*this));
+    GLOAM_TRY_STATUS(topics_status_);
     services_->start();
     thread_ = std::thread([this] { run(); });
     return {};
@@ -84,21 +86,28 @@ class Ros2Bridge final : public Bridge {
     stats.messages_out = outlets_->sent() + services_->answered();
     stats.messages_in = inlets_->heard() + services_->answered();
     stats.refused = inlets_->refused() + services_->refused();
-    stats.dropped = outlets_->dropped();
+    stats.dropped = outlets_->lost() + subscription_->dropped();
     return stats;
   }
   Status status() const override { return {}; }
 
  private:
-  // The topics of the World that runs; after a recompile some are others.
-  Status take_topics() {
-    world_ = simulation_.world().compiled();
-    GLOAM_TRY(const auto topics, simulation_.topics());
-    std::vector<TopicInfo> said, heard;
+  void on_message(const TopicMessage& message) override { outlets_->write(message); }
+  void on_topics(std::span<const TopicInfo> topics) override {
+    topics_status_ = set_topics(topics);
+    tell(topics_status_);
+    look();
+  }
+  void on_error(const std::string&, const Error& why) override { tell(why); }
+
+  // The topics of the World that runs; a recompile may change them.
+  Status set_topics(std::span<const TopicInfo> topics) {
+    std::vector<TopicInfo> outputs, inputs;
     for (const TopicInfo& topic : topics)
-      if (is_offered(options_.topics, topic.name)) (topic.is_input ? heard : said).push_back(topic);
-    GLOAM_TRY_STATUS(outlets_->set_topics(said));
-    GLOAM_TRY_STATUS(inlets_->set_topics(heard));
+      if (is_offered(options_.topics, topic.name))
+        (topic.is_input ? inputs : outputs).push_back(topic);
+    GLOAM_TRY_STATUS(outlets_->set_topics(outputs));
+    GLOAM_TRY_STATUS(inlets_->set_topics(inputs));
     GLOAM_TRY_STATUS(offers_->follow_robots());
     node_->announce();
     return {};
@@ -124,8 +133,7 @@ class Ros2Bridge final : public Bridge {
       if (stopping_) return;
       is_due_ = false;
       lock.unlock();
-      if (simulation_.world().compiled() != world_) tell(take_topics());
-      tell(outlets_->follow_subscriptions());
+      subscription_->set_topics(outlets_->wanted());
       inlets_->release_silent();
       const auto now = std::chrono::steady_clock::now();
       if (now - told > std::chrono::seconds(1)) {
@@ -143,12 +151,13 @@ class Ros2Bridge final : public Bridge {
   Operator& operations_;
   const Ros2Options options_;
   int domain_ = 0;
-  std::shared_ptr<const CompiledWorld> world_;  // whose topics are offered
   std::unique_ptr<DdsNode> node_;
   std::unique_ptr<TopicOutlets> outlets_;
   std::unique_ptr<TopicInlets> inlets_;
   std::unique_ptr<NodeServices> offers_;
   std::unique_ptr<ServiceServer> services_;
+  std::unique_ptr<TopicSubscription> subscription_;
+  Status topics_status_;  // of the last on_topics()
   std::mutex mutex_;
   std::condition_variable wake_;
   bool stopping_ = false, is_due_ = false;

@@ -3,11 +3,6 @@
 #include "bridge/ros2/ros2_names.h"
 
 namespace gloam::bridge {
-namespace {
-
-constexpr size_t kMaxQueuedRequests = 256;  // requests; further ones are dropped
-
-}  // namespace
 
 Status ServiceServer::add(Ros2Service service) {
   auto entry = std::make_unique<Entry>();
@@ -18,22 +13,17 @@ Status ServiceServer::add(Ros2Service service) {
                                              .qos = qos}));
   entry->service = std::move(service);
   const Entry* const self = entry.get();
-  GLOAM_TRY(
-      entry->reader,
-      node_.add_reader({.topic = dds_request(entry->service.name),
-                        .type = dds_type(entry->service.type, "_Request"),
-                        .type_hash = entry->service.hash,
-                        .qos = qos},
-                       [this, self](const DdsSample& sample) {
-                         const std::lock_guard lock(mutex_);
-                         if (queue_.size() >= kMaxQueuedRequests) {
-                           ++refused_;
-                           return;
-                         }
-                         queue_.push_back(
-                             {self, {sample.data.begin(), sample.data.end()}, sample.request});
-                         came_.notify_one();
-                       }));
+  GLOAM_TRY(entry->reader,
+            node_.add_reader(
+                {.topic = dds_request(entry->service.name),
+                 .type = dds_type(entry->service.type, "_Request"),
+                 .type_hash = entry->service.hash,
+                 .qos = qos},
+                [this, self](const DdsSample& sample) {
+                  const PushResult pushed =
+                      queue_.push({self, {sample.data.begin(), sample.data.end()}, sample.request});
+                  if (pushed == PushResult::kFull) ++refused_;
+                }));
   entries_.push_back(std::move(entry));
   return {};
 }
@@ -43,26 +33,14 @@ void ServiceServer::start() {
 }
 
 void ServiceServer::stop() {
-  {
-    const std::lock_guard lock(mutex_);
-    stopping_ = true;
-  }
-  came_.notify_all();
+  queue_.close();
+  queue_.take_all();
   if (thread_.joinable()) thread_.join();
   for (const auto& entry : entries_) entry->reader.reset();
 }
 
 void ServiceServer::run() {
-  std::unique_lock lock(mutex_);
-  while (true) {
-    came_.wait(lock, [this] { return stopping_ || !queue_.empty(); });
-    if (stopping_) return;
-    const Waiting waiting = std::move(queue_.front());
-    queue_.pop_front();
-    lock.unlock();
-    answer(waiting);
-    lock.lock();
-  }
+  while (const auto waiting = queue_.pop()) answer(*waiting);
 }
 
 void ServiceServer::answer(const Waiting& waiting) {

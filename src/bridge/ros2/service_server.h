@@ -3,14 +3,12 @@
 // other on a thread of their own, since some take as long as a compilation.
 
 #include <atomic>
-#include <condition_variable>
-#include <deque>
 #include <functional>
 #include <memory>
-#include <mutex>
 #include <thread>
 #include <vector>
 
+#include "base/threads/bounded_queue.h"
 #include "bridge/ros2/dds_node.h"
 #include "bridge/ros2/ros2_service.h"
 
@@ -44,10 +42,8 @@ class ServiceServer {
 
   DdsNode& node_;
   std::vector<std::unique_ptr<Entry>> entries_;
-  std::mutex mutex_;
-  std::condition_variable came_;
-  std::deque<Waiting> queue_;
-  bool stopping_ = false;
+  static constexpr size_t kMaxQueuedRequests = 256;  // further ones are refused
+  BoundedQueue<Waiting> queue_{{.items = kMaxQueuedRequests}, Overflow::kReject};
   std::atomic<int64_t> answered_{0}, refused_{0};
   std::thread thread_;
 };

@@ -18,16 +18,16 @@ bool is_drive(const Command& command) {
   return std::visit(
       [](const auto& what) {
         using T = std::decay_t<decltype(what)>;
+        if constexpr (std::is_same_v<T, StopTrajectory>) return false;
         return requires { what.robot; } || std::is_same_v<T, SetControl> ||
                std::is_same_v<T, SetJointGoal>;
       },
       command.what);
 }
 
-// "robot go1" -> "go1".
+// The robot that an input drives; "" = none.
 std::string robot_of(const TopicInfo& topic) {
-  constexpr std::string_view kRobot = "robot ";
-  return topic.source.starts_with(kRobot) ? topic.source.substr(kRobot.size()) : std::string();
+  return topic.source.kind == TopicSource::Kind::kRobot ? topic.source.name : std::string();
 }
 
 }  // namespace

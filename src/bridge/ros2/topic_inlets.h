@@ -48,7 +48,7 @@ class TopicInlets {
 
   Simulation& simulation_;
   DdsNode& node_;
-  std::map<std::string, Inlet> inlets_;  // by name; the bridge's thread only
+  std::map<std::string, Inlet> inlets_;  // by name; of set_topics()
   std::mutex mutex_;
   std::map<std::string, Master> masters_;  // by robot
   std::string refusal_;

@@ -47,10 +47,8 @@ World compile_file(const std::filesystem::path& file) {
   return *world;
 }
 
-World compile_text(const char* text) {
-  const auto folder = std::filesystem::path(testing::TempDir()) / "gloam_foxglove";
-  std::filesystem::create_directories(folder);
-  const auto file = folder / "cart.xml";  // the robot's name
+World compile_text(const std::string& text) {
+  const std::filesystem::path file = own_folder() / "cart.xml";  // the robot's name
   std::ofstream(file) << text;
   return compile_file(file);
 }
@@ -330,7 +328,7 @@ TEST_F(FoxgloveBridgeTest, ServicesAreCalledInCdrAndJson) {
   ASSERT_EQ(client.upgrade(kWithToken, kV1), 101);
   const json services = *client.wait_for("advertiseServices");
   std::vector<uint8_t> request;
-  encode(std_srvs::Trigger_Request{}, &request);
+  encode(std_srvs::srv::Trigger_Request{}, &request);
   client.send_frame(2, call(service_of(services, "/step"), 1, "cdr",
                             std::string(request.begin(), request.end())));
   auto answer = client.wait_for_binary(3);
@@ -338,7 +336,7 @@ TEST_F(FoxgloveBridgeTest, ServicesAreCalledInCdrAndJson) {
   EXPECT_EQ(number_at<uint32_t>(*answer, 4), 1u);
   EXPECT_EQ(answer->substr(12, 3), "cdr");
   const auto bytes = answer->substr(15);
-  const auto response = decode<std_srvs::Trigger_Response>(
+  const auto response = decode<std_srvs::srv::Trigger_Response>(
       {reinterpret_cast<const uint8_t*>(bytes.data()), bytes.size()});
   ASSERT_TRUE(response.ok());
   EXPECT_TRUE(response->success) << response->message;
@@ -469,7 +467,7 @@ TEST_F(FoxgloveBridgeTest, GivesNoFilesAway) {
 
 TEST_F(FoxgloveBridgeTest, GivesMeshesThatARobotNames) {
   namespace fs = std::filesystem;
-  const fs::path package = fs::path(testing::TempDir()) / "gloam_foxglove" / "arm";
+  const fs::path package = own_folder() / "arm";
   fs::create_directories(package / "meshes");
   fs::create_directories(package / "urdf");
   std::ofstream(package / "package.xml") << "<package><name>arm</name></package>";
@@ -505,7 +503,7 @@ TEST_F(FoxgloveBridgeTest, TopicsFollowARecompile) {
   ASSERT_TRUE(client.wait_for_data(1));
   const std::string changed = R"(<mujoco model="other"><option timestep="0.002"/><worldbody>
     <body name="ball"><freejoint/><geom size="0.1"/></body></worldbody></mujoco>)";
-  ASSERT_TRUE(simulation_->recompile(compile_text(changed.c_str())).ok());
+  ASSERT_TRUE(simulation_->recompile(compile_text(changed)).ok());
   const auto gone = client.wait_for("unadvertise");
   ASSERT_TRUE(gone);
   bool found = false;

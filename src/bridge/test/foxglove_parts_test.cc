@@ -1,19 +1,16 @@
-// Parts of the bridge to Foxglove alone: the outbox, layouts of messages, JSON, names of meshes.
+// Parts of the bridge to Foxglove alone: layouts of messages, JSON, names of meshes.
 
 #include <gtest/gtest.h>
 
 #include <cstdlib>
 #include <cstring>
-#include <thread>
 
 #include "bridge/foxglove/assets.h"
 #include "bridge/foxglove/client_messages.h"
 #include "bridge/foxglove/json_message.h"
-#include "bridge/foxglove/outbox.h"
 #include "bridge/foxglove/publishing.h"
 #include "bridge/foxglove/server_messages.h"
 #include "bridge/topic_filter.h"
-#include "bridge/worker.h"
 #include "ros/codec.h"
 #include "ros/messages/sensor_msgs.h"
 
@@ -21,68 +18,6 @@ namespace gloam::bridge::foxglove {
 namespace {
 
 using nlohmann::json;
-
-Frame frame_of(size_t bytes, char mark) { return {std::string(bytes, mark)}; }
-
-std::string marks(Outbox& outbox) {
-  std::string marks;
-  while (const auto frame = outbox.next()) marks += frame->head[0];
-  return marks;
-}
-
-TEST(FoxgloveOutbox, DropsTheOldestDataAndKeepsTheRest) {
-  int wakes = 0;
-  Outbox outbox([&] { ++wakes; }, {.data_bytes = 1000, .kept_bytes = 1000});
-  outbox.offer(frame_of(300, 'a'));
-  outbox.send(frame_of(300, 'K'));
-  for (const char mark : {'b', 'c', 'd'}) outbox.offer(frame_of(300, mark));
-  EXPECT_EQ(wakes, 1);
-  EXPECT_EQ(outbox.dropped(), 2);
-  EXPECT_EQ(marks(outbox), "Kcd");
-  outbox.offer(frame_of(5000, 'L'));
-  EXPECT_EQ(wakes, 2);
-  EXPECT_EQ(marks(outbox), "L") << "one message may be larger";
-}
-
-TEST(FoxgloveOutbox, OldDataAreNotSent) {
-  Outbox outbox([] {}, {.data_age = std::chrono::milliseconds(20)});
-  outbox.offer(frame_of(10, 'a'));
-  outbox.send(frame_of(10, 'K'));
-  std::this_thread::sleep_for(std::chrono::milliseconds(50));
-  outbox.offer(frame_of(10, 'b'));
-  EXPECT_EQ(marks(outbox), "Kb");
-  EXPECT_EQ(outbox.dropped(), 1);
-}
-
-TEST(FoxgloveOutbox, OverflowsByWhatMustArrive) {
-  Outbox outbox([] {}, {.kept_bytes = 1000});
-  outbox.send(frame_of(5000, 'a'));
-  EXPECT_FALSE(outbox.overflowed()) << "one may be larger";
-  outbox.send(frame_of(1, 'b'));
-  EXPECT_TRUE(outbox.overflowed());
-  outbox.close();
-  outbox.send(frame_of(1, 'c'));
-  EXPECT_FALSE(outbox.next());
-}
-
-TEST(FoxgloveWorker, KeyedJobsInARowAreOne) {
-  Worker worker(1024);
-  std::atomic<bool> go = false;
-  std::string done;
-  worker.post([&] {
-    while (!go) std::this_thread::yield();
-  });
-  while (!worker.post([] {})) {
-  }
-  for (const char mark : {'a', 'b', 'c'}) worker.post([&done, mark] { done += mark; }, 5);
-  worker.post([&done] { done += 'x'; });
-  worker.post([&done] { done += 'd'; }, 5);
-  std::atomic<bool> ended = false;
-  worker.post([&] { ended = true; });
-  go = true;
-  while (!ended) std::this_thread::yield();
-  EXPECT_EQ(done, "cxd");
-}
 
 TEST(FoxgloveMessages, HaveTheLayoutsOfTheSpecification) {
   const auto payload = std::make_shared<const std::vector<uint8_t>>(std::vector<uint8_t>{9, 8});

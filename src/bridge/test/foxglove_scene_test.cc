@@ -6,6 +6,7 @@
 #include <fstream>
 #include <map>
 
+#include "foxglove_client.h"
 #include "gloam/simulation.h"
 #include "ros/codec.h"
 #include "ros/messages/foxglove_msgs.h"
@@ -38,10 +39,9 @@ constexpr const char* kShapes = R"(<mujoco model="shapes">
 </mujoco>)";
 
 std::map<std::string, foxglove_msgs::SceneEntity> entities_of(const char* model) {
-  const auto folder = std::filesystem::path(testing::TempDir()) / "gloam_foxglove";
-  std::filesystem::create_directories(folder);
-  std::ofstream(folder / "shapes.xml") << model;
-  const auto scene = load_scene(folder / "shapes.xml");
+  const std::filesystem::path file = own_folder() / "shapes.xml";
+  std::ofstream(file) << model;
+  const auto scene = load_scene(file);
   EXPECT_TRUE(scene.ok()) << (scene.ok() ? "" : scene.error().to_string());
   const auto world = World::compile(*scene);
   EXPECT_TRUE(world.ok()) << (world.ok() ? "" : world.error().to_string());

@@ -389,8 +389,10 @@ TEST_F(OperatorTest, RecordsTakesPicturesAndGoesBack) {
   expect_ok(op().forget_checkpoint(id));
   expect_error(op().restore_checkpoint(id), ErrorKind::kInput, "no checkpoint");
 
-  const auto frame = op().picture(
-      {.width = 32, .height = 24, .render = {.tier = "direct", .spp = 1, .denoise = false}});
+  const auto frame =
+      op().picture({.width = 32,
+                    .height = 24,
+                    .render = {.tier = RenderTier::kDirect, .spp = 1, .denoise = false}});
   ASSERT_TRUE(frame.ok()) << frame.error().to_string();
   EXPECT_EQ((*frame)->rgb.size(), 32u * 24 * 3);
   EXPECT_EQ((*frame)->step, 50);

@@ -10,8 +10,9 @@
 #include "bridge/ros2/services/actions.h"
 #include "bridge/test/lab.h"
 #include "ros/codec.h"
+#include "ros/messages/action_msgs.h"
 #include "ros/messages/control_msgs_5.h"
-#include "ros/messages/simulation_services.h"
+#include "ros/messages/simulation_interfaces.h"
 
 namespace gloam::bridge {
 namespace {
@@ -114,6 +115,21 @@ class Ros2Actions : public Lab {
   static ca::FollowJointTrajectory_GetResult_Response outcome(Client& client, uint8_t id) {
     auto result = client.result<ca::FollowJointTrajectory_GetResult_Response>(id);
     if (result.wait_for(kLongest) != std::future_status::ready) {
+      ADD_FAILURE() << "no result";
+      return {};
+    }
+    return result.get();
+  }
+  // Publishes the trajectory and takes steps until the goal has a result: its server may read the
+  // step of the simulation late, and then waits for a later one.
+  ca::FollowJointTrajectory_GetResult_Response outcome_beside(std::span<const uint8_t> trajectory,
+                                                              Client& client, uint8_t id) {
+    auto result = client.result<ca::FollowJointTrajectory_GetResult_Response>(id);
+    const auto end = std::chrono::steady_clock::now() + kLongest;
+    while (result.wait_for(std::chrono::milliseconds(20)) != std::future_status::ready) {
+      EXPECT_TRUE(simulation_->publish("/arm/joint_trajectory", trajectory).ok());
+      EXPECT_TRUE(op().step(100).ok());
+      if (std::chrono::steady_clock::now() < end) continue;
       ADD_FAILURE() << "no result";
       return {};
     }
@@ -227,11 +243,76 @@ TEST_F(Ros2Actions, ANewTrajectoryReplacesTheOld) {
   ASSERT_TRUE(send(*client, 1, bend(1, 50)));
   ASSERT_TRUE(op().play().ok());
   ASSERT_TRUE(send(*client, 2, bend(0.2, 0.2)));
-  EXPECT_EQ(outcome(*client, 1).status, GoalStatus::STATUS_CANCELED);
+  const auto replaced = outcome(*client, 1);
+  EXPECT_EQ(replaced.status, GoalStatus::STATUS_ABORTED);
+  EXPECT_EQ(replaced.result.error_code, Fjt::INVALID_GOAL);
+  EXPECT_EQ(replaced.result.error_string, "a newer goal has replaced it");
   EXPECT_EQ(outcome(*client, 2).status, GoalStatus::STATUS_SUCCEEDED);
   ASSERT_TRUE(send(*client, 3, bend(1, 50)));
   EXPECT_EQ(client->cancel(3).return_code, Cancel::ERROR_NONE);
   EXPECT_EQ(outcome(*client, 3).status, GoalStatus::STATUS_CANCELED);
+}
+
+TEST_F(Ros2Actions, AMessageOfTheTopicReplacesTheTrajectoryOfAGoal) {
+  const auto client = follower();
+  std::vector<uint8_t> message;
+  encode(bend(0.3, 0.4).trajectory, &message);
+  const Robot arm = simulation_->world().find_robot("arm").value();
+  ASSERT_TRUE(send(*client, 1, bend(1, 50)));
+  const auto followed = [&] { return simulation_->latest().trajectory(arm); };
+  while (followed() == nullptr || followed()->tag != 1) ASSERT_TRUE(op().step(1).ok());
+  ASSERT_TRUE(simulation_->publish("/arm/joint_trajectory", message).ok());
+  auto end = outcome_beside(message, *client, 1);
+  EXPECT_EQ(end.status, GoalStatus::STATUS_ABORTED);
+  EXPECT_EQ(end.result.error_code, Fjt::INVALID_GOAL);
+  EXPECT_EQ(end.result.error_string, "another command has ended the trajectory");
+  ASSERT_TRUE(op().step(200).ok());
+  ASSERT_NE(followed(), nullptr) << "the goal must not stop its successor";
+  EXPECT_EQ(followed()->tag, 0);
+  EXPECT_NEAR(elbow(), 0.3, 0.1);
+  // One that waits for its stamp.
+  auto goal = bend(1, 1);
+  goal.trajectory.header.stamp.sec = 2;
+  ASSERT_TRUE(send(*client, 2, goal));
+  while (simulation_->latest().time() < 2.1) {
+    ASSERT_TRUE(simulation_->publish("/arm/joint_trajectory", message).ok());
+    ASSERT_TRUE(op().step(20).ok());
+  }
+  end = outcome_beside(message, *client, 2);
+  EXPECT_EQ(end.status, GoalStatus::STATUS_ABORTED);
+  EXPECT_EQ(end.result.error_string, "another command has ended the trajectory");
+  ASSERT_NE(followed(), nullptr);
+  EXPECT_EQ(followed()->tag, 0);
+}
+
+TEST_F(Ros2Actions, CancellingHoldsTheJointsAlsoWhileAnotherClientHasTheRobot) {
+  const auto client = follower();
+  const Robot arm = simulation_->world().find_robot("arm").value();
+  ASSERT_TRUE(send(*client, 1, bend(1, 50)));
+  while (simulation_->latest().trajectory(arm) == nullptr) ASSERT_TRUE(op().step(1).ok());
+  const auto lease = simulation_->claim(arm);
+  ASSERT_TRUE(lease.ok()) << "a goal does not claim the robot";
+  EXPECT_EQ(client->cancel(1).return_code, Cancel::ERROR_NONE);
+  EXPECT_EQ(outcome(*client, 1).status, GoalStatus::STATUS_CANCELED);
+  ASSERT_TRUE(op().step(1).ok());
+  EXPECT_EQ(simulation_->latest().trajectory(arm), nullptr);
+}
+
+TEST_F(Ros2Actions, AGoalThatIsCancelledBeforeItsStampNeverStarts) {
+  const auto client = follower();
+  auto goal = bend(0.4, 0.1);
+  goal.trajectory.header.stamp.nanosec = 500'000'000;
+  ASSERT_TRUE(send(*client, 1, goal));
+  while (client->statuses().back() != GoalStatus::STATUS_EXECUTING) std::this_thread::yield();
+  ASSERT_TRUE(op().step(100).ok());
+  EXPECT_EQ(client->cancel(1).return_code, Cancel::ERROR_NONE);
+  EXPECT_EQ(outcome(*client, 1).status, GoalStatus::STATUS_CANCELED);
+  const Robot arm = simulation_->world().find_robot("arm").value();
+  for (int i = 0; i < 5; ++i) {
+    ASSERT_TRUE(op().step(100).ok());
+    EXPECT_EQ(simulation_->latest().trajectory(arm), nullptr);
+  }
+  EXPECT_GT(simulation_->latest().time(), 0.6);
 }
 
 TEST_F(Ros2Actions, JointsThatAreWrongAbortTheirGoalAndNoOther) {

@@ -15,8 +15,8 @@
 #include "ros/codec.h"
 #include "ros/message_types.h"
 #include "ros/messages/rcl_interfaces.h"
+#include "ros/messages/simulation_interfaces.h"
 #include "ros/messages/simulation_interfaces_1.h"
-#include "ros/messages/simulation_services.h"
 
 namespace gloam::bridge {
 namespace {

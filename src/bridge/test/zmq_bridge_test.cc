@@ -18,7 +18,7 @@
 #include "gloam/log.h"
 #include "ros/codec.h"
 #include "ros/messages/geometry_msgs.h"
-#include "ros/messages/sensor_images.h"
+#include "ros/messages/sensor_msgs.h"
 #include "ros/messages/std_msgs.h"
 
 namespace gloam::bridge::zeromq {

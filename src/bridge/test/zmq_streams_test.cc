@@ -10,7 +10,7 @@
 
 #include "bridge/test/zmq_fixture.h"
 #include "ros/codec.h"
-#include "ros/messages/sensor_images.h"
+#include "ros/messages/sensor_msgs.h"
 
 namespace gloam::bridge::zeromq {
 namespace {

@@ -6,7 +6,7 @@
 #include <memory>
 #include <span>
 
-#include "bridge/worker.h"
+#include "base/threads/worker.h"
 #include "bridge/zmq/operations/operation.h"
 #include "bridge/zmq/request.h"
 
@@ -35,7 +35,7 @@ class Dispatcher {
   Services services_;
   Outbox& outbox_;
   std::atomic<int64_t> obeyed_{0}, refused_{0};
-  Worker worker_{kMostJobs};  // last: it uses the others
+  Worker worker_{kMostJobs, Overflow::kReject};  // last: it uses the others
 };
 
 }  // namespace gloam::bridge::zeromq

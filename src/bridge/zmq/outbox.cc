@@ -8,8 +8,8 @@
 namespace gloam::bridge::zeromq {
 namespace {
 
-constexpr size_t kMaxQueuedMessages = 256;            // messages of a topic
-constexpr size_t kMaxQueuedBytes = size_t{16} << 20;  // of a topic, but for the newest message
+// Limits of the queue of one topic.
+constexpr QueueLimits kTopicLimits = {.items = 256, .bytes = size_t{16} << 20};
 
 }  // namespace
 
@@ -40,18 +40,14 @@ void Outbox::reply(Reply reply) {
 }
 
 void Outbox::publish(Publication publication) {
+  std::vector<Publication> dropped;
   {
     const std::lock_guard lock(mutex_);
-    Queue& queue = queues_[publication.topic];
-    queue.bytes += publication.bytes();
-    queue.waiting.push_back(std::move(publication));
-    while (queue.waiting.size() > kMaxQueuedMessages ||
-           (queue.waiting.size() > 1 && queue.bytes > kMaxQueuedBytes)) {
-      queue.bytes -= queue.waiting.front().bytes();
-      queue.waiting.pop_front();
-      ++dropped_;
-    }
+    const auto queue = queues_.try_emplace(publication.topic, kTopicLimits, Overflow::kDropOldest);
+    const size_t bytes = publication.bytes();
+    queue.first->second.push(std::move(publication), {.bytes = bytes}, &dropped);
   }
+  dropped_ += static_cast<int64_t>(dropped.size());
   wake();
 }
 
@@ -61,14 +57,14 @@ std::vector<Reply> Outbox::take_replies() {
 }
 
 std::vector<Publication> Outbox::take_publications() {
-  std::map<std::string, Queue> queues;
+  std::map<std::string, BoundedQueue<Publication>> queues;
   {
     const std::lock_guard lock(mutex_);
     queues.swap(queues_);
   }
   std::vector<Publication> all;
   for (auto& [topic, queue] : queues)
-    for (Publication& publication : queue.waiting) all.push_back(std::move(publication));
+    for (Publication& publication : queue.take_all()) all.push_back(std::move(publication));
   return all;
 }
 

@@ -4,13 +4,13 @@
 
 #include <atomic>
 #include <cstdint>
-#include <deque>
 #include <map>
 #include <mutex>
 #include <string>
 #include <vector>
 #include <zmq.hpp>
 
+#include "base/threads/bounded_queue.h"
 #include "bridge/zmq/pack.h"
 #include "gloam/result.h"
 
@@ -58,18 +58,13 @@ class Outbox {
   int64_t dropped() const { return dropped_; }
 
  private:
-  struct Queue {
-    std::deque<Publication> waiting;
-    size_t bytes = 0;
-  };
-
   explicit Outbox(int wake_fd) : wake_fd_(wake_fd) {}
 
   const int wake_fd_;
   std::atomic<int64_t> dropped_{0};
-  std::mutex mutex_;
+  std::mutex mutex_;  // guards these two
   std::vector<Reply> replies_;
-  std::map<std::string, Queue> queues_;  // by topic
+  std::map<std::string, BoundedQueue<Publication>> queues_;  // by topic
 };
 
 }  // namespace gloam::bridge::zeromq

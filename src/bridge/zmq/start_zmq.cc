@@ -29,8 +29,11 @@ class ZmqBridge final : public Bridge {
                                   .public_key = endpoints->public_key,
                                   .scene = context.simulation.world().scene().name}));
     if (options.shared_memory) remove_stale_rings();
-    return std::unique_ptr<Bridge>(
+    std::unique_ptr<ZmqBridge> bridge(
         new ZmqBridge(context, options, std::move(endpoints), std::move(outbox), std::move(file)));
+    GLOAM_TRY_STATUS(bridge->streams_.open());
+    bridge->server_.start();
+    return std::unique_ptr<Bridge>(std::move(bridge));
   }
 
   // The file first, so that nobody finds a server that ends; then whoever uses the sockets.
@@ -70,9 +73,7 @@ class ZmqBridge final : public Bridge {
                      .shared_memory = options.shared_memory,
                      .is_stopping = is_stopping_},
                     *outbox_),
-        server_(std::move(endpoints), *outbox_, events()) {
-    server_.start();
-  }
+        server_(std::move(endpoints), *outbox_, events()) {}
 
   ServerEvents events() {
     return {.on_request =

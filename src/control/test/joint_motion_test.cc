@@ -87,6 +87,78 @@ TEST(Trajectory, EndsWithAGoalForOneOfItsJointsAndHoldsWhenStopped) {
   EXPECT_EQ(sim->latest().control(Actuator{1}), 0.3);
 }
 
+// A joint that leaves a trajectory keeps nothing of its velocity, which would shift its goal.
+TEST(Trajectory, LeavesNoVelocityBehind) {
+  const auto world = arm_world(kPendulums, kHold);  // the servo damps
+  for (const bool by_name : {false, true}) {
+    auto sim = run_arm(world);
+    ASSERT_TRUE(sim->post({.what = to_point(0.8, 1)}).ok());
+    ASSERT_TRUE(sim->step(500).ok());
+    EXPECT_GT(sim->latest().trajectory(Joint{1})->at(0.5, 0).velocity, 1);
+    const decltype(Command::what) command = SetJointCommand{kArmRobot, {{1, 0}}, {0.3}};
+    const decltype(Command::what) goal = SetJointGoal{{1, 0}, 0.3};
+    ASSERT_TRUE(sim->post({.what = by_name ? command : goal}).ok());
+    ASSERT_TRUE(sim->step(10).ok());
+    EXPECT_EQ(sim->latest().control(Actuator{1}), 0.3);
+  }
+}
+
+TEST(Trajectory, MovesOnlyItsJointsAndOthersContinueTheirs) {
+  auto sim = run_arm(servo_world());
+  const FollowTrajectory both{kArmRobot, {{0, 0}, {1, 0}}, {.points = {{1, {0.4, 0.8}, {0, 0}}}}};
+  ASSERT_TRUE(sim->post({.what = both}).ok());
+  ASSERT_TRUE(sim->post({300, to_point(-0.5, 1)}).ok());
+  ASSERT_TRUE(sim->step(600).ok());
+  Snapshot now = sim->latest();
+  const auto first = now.trajectory(Joint{0}), second = now.trajectory(Joint{1});
+  ASSERT_TRUE(first != nullptr && second != nullptr);
+  EXPECT_EQ(first->start_step, 0);
+  EXPECT_EQ(second->start_step, 300);
+  EXPECT_EQ(now.trajectory(kArmRobot), second) << "the newest";
+  EXPECT_EQ(now.trajectory(Joint{2}), nullptr);
+  const double change = second->start_time;
+  EXPECT_EQ(second->at(change, 0).position, first->at(change, 1).position);
+  EXPECT_EQ(second->at(change, 0).velocity, first->at(change, 1).velocity);
+  ASSERT_TRUE(sim->post({.what = SetJointGoal{{1, 0}, 0.1}}).ok());
+  ASSERT_TRUE(sim->step(500).ok());
+  now = sim->latest();
+  EXPECT_EQ(now.trajectory(Joint{0}), first);
+  EXPECT_EQ(now.trajectory(Joint{1}), nullptr);
+  EXPECT_EQ(now.control(Actuator{1}), 0.1);
+  ASSERT_TRUE(sim->post({.what = StopTrajectory{kArmRobot, {{1, 0}}}}).ok());
+  ASSERT_TRUE(sim->step(1).ok());
+  EXPECT_EQ(sim->latest().trajectory(Joint{0}), first);
+  ASSERT_TRUE(sim->post({.what = StopTrajectory{kArmRobot, {{0, 0}}}}).ok());
+  ASSERT_TRUE(sim->step(1).ok());
+  EXPECT_EQ(sim->latest().trajectory(Joint{0}), nullptr);
+}
+
+TEST(Trajectory, ReplacesThoseThatWereToStartLater) {
+  const auto start_after = [](auto&&... commands) {
+    auto sim = run_arm(servo_world());
+    for (const Command& command : {commands...}) EXPECT_TRUE(sim->post(command).ok());
+    EXPECT_TRUE(sim->step(700).ok());
+    const auto active = sim->latest().trajectory(Joint{1});
+    return std::pair(active == nullptr ? -1 : active->start_step,
+                     sim->counters().commands_discarded);
+  };
+  const auto on_other = FollowTrajectory{kArmRobot, {{0, 0}}, {.points = {{1, {0.1}}}}};
+  const auto on_all = FollowTrajectory{kArmRobot, {}, {.points = {{1, {0.1, 0.1, 0.1}}}}};
+  using Found = std::pair<int64_t, int64_t>;
+  const Command later{500, to_point(0.8, 1)};
+  EXPECT_EQ(start_after(later, Command{100, to_point(0.1, 1)}), Found(100, 1));
+  EXPECT_EQ(start_after(later, Command{100, on_all}), Found(100, 1));
+  EXPECT_EQ(start_after(later, Command{100, on_other}), Found(500, 0));
+  EXPECT_EQ(start_after(Command{100, to_point(0.1, 1)}, later), Found(500, 0)) << "posted after it";
+  EXPECT_EQ(start_after(later, Command{100, StopTrajectory{kArmRobot}}), Found(-1, 1));
+  EXPECT_EQ(start_after(later, Command{100, StopTrajectory{kArmRobot, {{1, 0}}}}), Found(-1, 1));
+  EXPECT_EQ(start_after(later, Command{100, StopTrajectory{kArmRobot, {{0, 0}}}}), Found(500, 0));
+  // Two that wait, of which the last is discarded, and one that is posted behind them.
+  EXPECT_EQ(start_after(Command{650, SetControl{Actuator{0}, 0}}, later,
+                        Command{100, to_point(0.1, 1)}, Command{600, to_point(0.2, 1)}),
+            Found(600, 1));
+}
+
 // Ten minutes of points are one Command, and a step of them costs no more than one of a second.
 TEST(Trajectory, LongOnesAreOneCommand) {
   auto sim = run_arm(servo_world());
@@ -108,7 +180,7 @@ TEST(Trajectory, BadOnesAreRejectedWhenTheyArePosted) {
   EXPECT_PRED2(has, error_of(*sim, FollowTrajectory{kArmRobot, {}, {.points = {{1, {1}}}}}),
                "1 positions for 3 joints");
   EXPECT_PRED2(has, error_of(*sim, FollowTrajectory{kArmRobot, {{0, 0}}, {.points = {{1, {7}}}}}),
-               "joint 'm' is outside its range, -6 to 6");
+               "position 7 of joint 'm' in point 0 is outside its range, -6 to 6");
   EXPECT_PRED2(has, error_of(*sim, FollowTrajectory{kArmRobot, {{9, 0}}, {.points = {{1, {0}}}}}),
                "joint number 9");
   EXPECT_PRED2(
@@ -187,6 +259,9 @@ void play(Simulator& sim) {
   post(950, SetController{kArmRobot, {.type = "none"}});
   post(1000, SetController{kArmRobot, kHold});
   post(1100, to_point(0.5, 0.7));
+  post(1150, FollowTrajectory{kArmRobot, {{0, 0}, {1, 0}}, {.points = {{1, {0.1, -0.2}, {0, 0}}}}});
+  post(1200, to_point(-0.4, 0.9));
+  post(1250, StopTrajectory{kArmRobot, {{0, 0}}});
 }
 
 TEST(SwitchController, RunsRepeatToTheBit) {
@@ -196,7 +271,7 @@ TEST(SwitchController, RunsRepeatToTheBit) {
   ASSERT_TRUE(sim->step(1500).ok());
   const uint64_t end = sim->latest().hash();
   const std::vector<LoggedCommand> log = sim->take_command_log();
-  EXPECT_EQ(log.size(), 9u);
+  EXPECT_EQ(log.size(), 12u);
 
   // A reset returns to the scene's controller: the same again.
   ASSERT_TRUE(sim->reset().ok());
@@ -222,7 +297,7 @@ TEST(SwitchController, RunsRepeatToTheBit) {
 }
 
 TEST(SwitchController, CheckpointsHoldTheControllerTheTargetsAndTheTrajectory) {
-  for (const int64_t at : {100, 220, 520, 940, 1300}) {
+  for (const int64_t at : {100, 220, 520, 940, 1180, 1300}) {
     auto sim = run_arm(servo_world());
     play(*sim);
     ASSERT_TRUE(sim->step(at).ok());
@@ -263,6 +338,7 @@ TEST(SwitchController, SurvivesARecompileUntilTheReset) {
   EXPECT_EQ(sim->latest().control(Actuator{0}), 0.25);  // gear 2
   ASSERT_NE(sim->latest().trajectory(kArmRobot), nullptr);
   EXPECT_EQ(sim->latest().trajectory(kArmRobot)->start_step, 0);
+  EXPECT_EQ(sim->latest().trajectory(Joint{1}), sim->latest().trajectory(kArmRobot));
   ASSERT_TRUE(sim->reset().ok());
   ASSERT_TRUE(sim->step(100).ok());
   EXPECT_EQ(sim->latest().control(Actuator{1}), 0) << "the scene's holds the servo at 0";

@@ -63,7 +63,7 @@ TEST(LogQueue, DropsTheOldestWithoutWaiting) {
   std::atomic<bool> stuck = true;
   LogQueue queue(std::make_unique<McapWriter>(std::make_unique<StuckSink>(bytes, &stuck),
                                               McapWriterOptions{.chunk_size = 1}),
-                 {.policy = LogQueuePolicy::kDropOldest, .most_messages = 100});
+                 {.overflow = Overflow::kDropOldest, .most_messages = 100});
   ASSERT_TRUE(declare_two(&queue).ok());
   for (uint32_t i = 0; i < 1000; ++i) ASSERT_TRUE(queue.push(queued(i)).ok());  // the disk stands
   EXPECT_GE(queue.dropped(), 899u);
@@ -81,11 +81,11 @@ TEST(LogQueue, DropsTheOldestWithoutWaiting) {
 }
 
 TEST(LogQueue, TellsAFullDiskAndNeverHangs) {
-  for (const LogQueuePolicy policy : {LogQueuePolicy::kWait, LogQueuePolicy::kDropOldest}) {
+  for (const Overflow overflow : {Overflow::kWait, Overflow::kDropOldest}) {
     const auto bytes = std::make_shared<LogBytes>();
     LogQueue queue(std::make_unique<McapWriter>(std::make_unique<MemorySink>(bytes, 5),
                                                 McapWriterOptions{.chunk_size = 200}),
-                   {.policy = policy, .most_messages = 10});
+                   {.overflow = overflow, .most_messages = 10});
     ASSERT_TRUE(declare_two(&queue).ok());
     uint32_t accepted = 0;
     while (accepted < 1000000 && queue.push(queued(accepted)).ok()) ++accepted;

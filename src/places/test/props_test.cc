@@ -148,7 +148,7 @@ TEST(Props, AreThingsThatCanStandInAWorld) {
       }
       check_boxes(*made);
       for (const LightOptions& light : made->lights) {
-        EXPECT_FALSE(light.type.empty());
+        EXPECT_TRUE(light.type.has_value());
         EXPECT_GT(light.flux.value_or(1), 0);
       }
     }

@@ -16,9 +16,9 @@ bool is_headlight(const LightDescription& light) { return light.light < 0 && lig
 
 LightView describe_light(const LightDescription& in) {
   LightView out;
-  out.kind = in.type == LightType::kPoint  ? LightKind::kPoint
-             : in.type == LightType::kSpot ? LightKind::kSpot
-                                           : LightKind::kDirectional;
+  out.kind = in.type == PunctualLightType::kPoint  ? LightKind::kPoint
+             : in.type == PunctualLightType::kSpot ? LightKind::kSpot
+                                                   : LightKind::kDirectional;
   out.casts_shadow = in.casts_shadow;
   out.intensity = in.intensity;
   out.radius = max(in.radius, 0.0f);

@@ -86,7 +86,7 @@ inline NoiseScene yard_scene(int width, int height) {
   box({0.55f, 0.05f, 0.5f}, {0, 1.5f, 0.5f});
   box({0.55f, 0.55f, 0.05f}, {0, 1, 1.05f});
   LightDescription sun;
-  sun.type = LightType::kDirectional;
+  sun.type = PunctualLightType::kDirectional;
   sun.intensity = {100, 96, 90};
   b.add_light(sun, {0, 0, 5}, {0.6f, 0.5f, -0.7f});
   return {"yard", b,

@@ -88,7 +88,7 @@ TEST(Flicker, LampsLightEachRowForItsShareOfTheirOnTime) {
   b.add(ShapeType::kBox, {5, 5, 0.1f}, translation({0, 0, -0.1f}),
         b.add_diffuse({0.5f, 0.5f, 0.5f}));
   LightDescription sun;
-  sun.type = LightType::kDirectional;
+  sun.type = PunctualLightType::kDirectional;
   sun.intensity = {100 * kPi, 100 * kPi, 100 * kPi};
   sun.schedule = 0;
   b.add_light(sun, {0, 0, 5});

@@ -119,7 +119,7 @@ struct FoggyBeam {
   explicit FoggyBeam(float cd) {
     b.add(ShapeType::kBox, {3, 0.1f, 3}, translation({0, 2, 1}), b.add_diffuse({0.3f, 0.3f, 0.3f}));
     LightDescription spot;
-    spot.type = LightType::kSpot;
+    spot.type = PunctualLightType::kSpot;
     spot.cos_cutoff = std::cos(0.2f);
     spot.intensity = {cd, cd, cd};
     b.add_light(spot, {0, 0, -0.5f});

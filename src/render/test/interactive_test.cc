@@ -110,7 +110,7 @@ TEST(Interactive, TheSkysLightIsCountedOnce) {
   sky.width = 2, sky.height = 1;
   sky.texels.assign(2, {100, 100, 100});
   LightDescription sun;  // a faint one: without any lamp no light is drawn at all
-  sun.type = LightType::kDirectional;
+  sun.type = PunctualLightType::kDirectional;
   sun.intensity = {1, 1, 1};
   b.add_light(sun, {}, {0, 0, -1});
   const CameraView view = SceneBuilder::camera(look_at({0, -0.5f, 3}, {0, 0, 0}), 48, 32, 40);
@@ -328,7 +328,7 @@ TEST(Interactive, NothingTrailsBehindWhatMoves) {
   const int body = b.add_body(translation({-1, 0, 0.3f}));
   b.add(ShapeType::kSphere, {0.3f, 0, 0}, {}, b.add_diffuse({0.02f, 0.02f, 0.02f}), body);
   LightDescription sun;
-  sun.type = LightType::kDirectional;
+  sun.type = PunctualLightType::kDirectional;
   sun.intensity = {100, 100, 100};
   b.add_light(sun, {}, {0, 0, -1});
   const CameraView view = SceneBuilder::camera(look_at({0, -3, 3}, {0, 0, 0}), 96, 72, 40);

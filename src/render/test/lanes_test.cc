@@ -146,10 +146,10 @@ SceneBuilder varied_scene() {
   lamp.radius = 0.1f;
   b.add_light(lamp, {0, 1, 2});
   lamp.radius = 0;
-  lamp.type = LightType::kSpot;
+  lamp.type = PunctualLightType::kSpot;
   b.add_light(lamp, {-1, -1, 2}, normalize(Vec3f{0.3f, 0.5f, -1}));
   LightDescription sun;
-  sun.type = LightType::kDirectional;
+  sun.type = PunctualLightType::kDirectional;
   sun.intensity = {100, 100, 90};
   sun.radius = 0.01f;
   b.add_light(sun, {0, 0, 5}, normalize(Vec3f{0.2f, 0.6f, -1}));

@@ -53,7 +53,7 @@ TEST(Light, DirectionalWithAndWithoutDisc) {
   for (const float radius : {0.0f, 0.2f}) {
     SceneBuilder b;
     LightDescription light;
-    light.type = LightType::kDirectional;
+    light.type = PunctualLightType::kDirectional;
     light.intensity = {100, 100, 100};
     light.radius = radius;
     b.add_light(light, {0, 0, 5}, normalize(Vec3f{0.6f, 0, -0.8f}));
@@ -63,7 +63,7 @@ TEST(Light, DirectionalWithAndWithoutDisc) {
 
 TEST(Light, SpotShinesInItsConeAndFades) {
   LightDescription light;
-  light.type = LightType::kSpot;
+  light.type = PunctualLightType::kSpot;
   light.intensity = {100, 100, 100};
   light.cos_cutoff = std::cos(0.5f);
   light.softness = 0.4f;

@@ -40,7 +40,7 @@ SceneBuilder hall(int only) {
         b.add_light(lamp, p);
         break;
       case 1:
-        lamp.type = LightType::kSpot;
+        lamp.type = PunctualLightType::kSpot;
         lamp.cos_cutoff = std::cos(0.6f);
         lamp.softness = 0.5f;
         b.add_light(lamp, p, normalize(Vec3f{0.1f * u, -0.1f * v, -1}));
@@ -61,7 +61,7 @@ SceneBuilder hall(int only) {
         break;
       default:
         if (i == 7) {
-          lamp.type = LightType::kDirectional;
+          lamp.type = PunctualLightType::kDirectional;
           lamp.radius = 0.05f;
           b.add_light(lamp, {0, 0, 5}, normalize(Vec3f{0.3f, 0.2f, -1}));
         } else {
@@ -152,7 +152,7 @@ TEST(ManyLights, AFrameLikeTheLastKeepsThePicture) {
   // The headlight, at the camera, is in the tree too.
   SceneBuilder b = hall(kAll);
   LightDescription head;
-  head.type = LightType::kDirectional;
+  head.type = PunctualLightType::kDirectional;
   head.casts_shadow = false;
   head.intensity = {5, 5, 5};
   b.description.lights.push_back(head);

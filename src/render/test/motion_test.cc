@@ -259,7 +259,7 @@ TEST(Motion, LampsMoveThroughTheirKeys) {
       lamp.intensity = {10, 10, 10};
       lamp.radius = 0.1f;
       if (spot) {
-        lamp.type = LightType::kSpot;
+        lamp.type = PunctualLightType::kSpot;
         lamp.cos_cutoff = std::cos(0.6f);
       }
       b.add_light(lamp, {-1, 0, 1});

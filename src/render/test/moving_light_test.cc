@@ -30,7 +30,7 @@ double sum_of(const Film& film) {
 
 LightDescription beam() {
   LightDescription spot;
-  spot.type = LightType::kSpot;
+  spot.type = PunctualLightType::kSpot;
   spot.intensity = {500, 500, 500};
   spot.cos_cutoff = std::cos(0.3f);
   spot.softness = 0.5f;
@@ -181,7 +181,7 @@ SceneBuilder room_of_a_day() {
   b.description.sky.environment = {"start", sky.width, sky.height, std::move(sky.texels)};
   b.description.sky.day = day;
   LightDescription sun;
-  sun.type = LightType::kDirectional;
+  sun.type = PunctualLightType::kDirectional;
   sun.radius = static_cast<float>(std::sin(kSunAngularRadius));
   sun.intensity = sky.sun_illuminance;
   sun.body = 0;

@@ -315,7 +315,7 @@ TEST(Path, DirectTierEqualsPathTierOfOneReflection) {
   LightDescription light;
   light.intensity = {100, 100, 100};
   b.add_light(light, {1, -1, 2});
-  light.type = LightType::kDirectional;
+  light.type = PunctualLightType::kDirectional;
   light.intensity = {20, 20, 20};
   b.add_light(light, {0, 0, 3}, normalize(Vec3f{1, 1, -2}));
   const CameraView view = SceneBuilder::camera(look_at({3, -3, 2}, {0, 0, 0.4f}), 32, 32, 30);

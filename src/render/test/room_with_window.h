@@ -35,7 +35,7 @@ inline SceneBuilder room_with_window(const RoomLight& light, bool is_guided) {
   }
   if (light.sun > 0) {
     LightDescription sun;
-    sun.type = LightType::kDirectional;
+    sun.type = PunctualLightType::kDirectional;
     sun.intensity = {light.sun, light.sun, light.sun};
     sun.radius = 0.01f;
     sun.is_static = is_guided;

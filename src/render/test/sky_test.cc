@@ -159,7 +159,7 @@ TEST(Sky, LampsShineByTheirProfile) {
 
 TEST(Sky, LampsMoveWithTheirBody) {
   LightDescription lamp;
-  lamp.type = LightType::kSpot;
+  lamp.type = PunctualLightType::kSpot;
   lamp.cos_cutoff = std::cos(0.5f);
   lamp.intensity = {400, 400, 400};
   EXPECT_NEAR(floor_light(floor_below(lamp, {}, 2), 0), 100, 1);

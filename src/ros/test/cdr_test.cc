@@ -7,7 +7,7 @@
 
 #include "ros/codec.h"
 #include "ros/messages/rmw_dds_common.h"
-#include "ros/messages/sensor_images.h"
+#include "ros/messages/sensor_msgs.h"
 #include "ros/messages/std_srvs.h"
 
 namespace gloam {
@@ -77,9 +77,9 @@ TEST(Cdr, EmptySequencesOfDoublesAreNotPadded) {
 }
 
 TEST(Cdr, EmptyMessagesTakeAByte) {
-  EXPECT_EQ(encoded(std_srvs::Trigger_Request{}), (Buffer{0, 1, 0, 0, 0}));
-  EXPECT_TRUE(decode<std_srvs::Trigger_Request>(Buffer{0, 1, 0, 0, 0}).ok());
-  EXPECT_FALSE(decode<std_srvs::Trigger_Request>(Buffer{0, 1, 0, 0}).ok());
+  EXPECT_EQ(encoded(std_srvs::srv::Trigger_Request{}), (Buffer{0, 1, 0, 0, 0}));
+  EXPECT_TRUE(decode<std_srvs::srv::Trigger_Request>(Buffer{0, 1, 0, 0, 0}).ok());
+  EXPECT_FALSE(decode<std_srvs::srv::Trigger_Request>(Buffer{0, 1, 0, 0}).ok());
 }
 
 TEST(Cdr, ReadsBigEndian) {

@@ -34,6 +34,12 @@ class Writer {
   void added(const char* key, double v) {
     if (v != 0) json_[key] = v;
   }
+  void added(const char* key, int64_t v) {
+    if (v != 0) json_[key] = v;
+  }
+  void added(const char* key, const std::vector<Joint>& v) {
+    if (!v.empty()) value(key, v);
+  }
   void value(const char* key, int v) { json_[key] = v; }
   void value(const char* key, bool v) { json_[key] = v; }
   void value(const char* key, const Vec3& v) { json_[key] = numbers(v); }
@@ -71,6 +77,10 @@ class Reader {
   }
   void value(const char* key, double& v) { v = json_.at(key).get<double>(); }
   void added(const char* key, double& v) { v = json_.value(key, 0.0); }
+  void added(const char* key, int64_t& v) { v = json_.value(key, int64_t{0}); }
+  void added(const char* key, std::vector<Joint>& v) {
+    if (json_.contains(key)) value(key, v);
+  }
   void value(const char* key, int& v) { v = json_.at(key).get<int>(); }
   void value(const char* key, bool& v) { v = json_.at(key).get<bool>(); }
   void value(const char* key, Vec3& v) { v = vec3(json_.at(key)); }
@@ -187,10 +197,11 @@ void visit(V& v, auto& c, const FollowTrajectory*) {
   v.value("profile", c.trajectory.profile), v.value("points", c.trajectory.points);
   v.value("max_velocity", c.trajectory.max_velocity);
   v.value("max_acceleration", c.trajectory.max_acceleration);
+  v.added("tag", c.tag);
 }
 template <class V>
 void visit(V& v, auto& c, const StopTrajectory*) {
-  v.handle("robot", c.robot, mjOBJ_UNKNOWN);
+  v.handle("robot", c.robot, mjOBJ_UNKNOWN), v.added("joints", c.joints);
 }
 
 using What = decltype(Command::what);

@@ -1,7 +1,7 @@
 // gloam::start_log: a log that begins and ends while its simulation goes on.
 
 #include "gloam/log.h"
-#include "runtime/live_simulation.h"
+#include "runtime/live/live_simulation.h"
 #include "runtime/log/log_recorder.h"
 
 namespace gloam {

@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-#include "runtime/live_simulation.h"
+#include "runtime/live/live_simulation.h"
 #include "runtime/log/pose_motion.h"
 #include "runtime/log/replay_scene.h"
 

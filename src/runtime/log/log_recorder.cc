@@ -41,7 +41,7 @@ Result<std::unique_ptr<LogRecorder>> LogRecorder::start(LiveSimulation& simulati
   McapWriterOptions options;
   options.durable = request.durable;
   LogQueueOptions queue;
-  queue.policy = request.required ? LogQueuePolicy::kWait : LogQueuePolicy::kDropOldest;
+  queue.overflow = request.required ? Overflow::kWait : Overflow::kDropOldest;
   auto writer = std::make_unique<McapWriter>(std::move(sink), std::move(options));
   std::unique_ptr<LogRecorder> log(new LogRecorder(simulation, request));
   GLOAM_TRY_STATUS(log->begin(std::make_unique<LogQueue>(std::move(writer), queue), topics));

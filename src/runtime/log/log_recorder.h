@@ -7,11 +7,11 @@
 #include <vector>
 
 #include "gloam/log.h"
-#include "runtime/live_simulation.h"
-#include "runtime/log/input_log.h"
+#include "runtime/live/input_log.h"
+#include "runtime/live/live_simulation.h"
+#include "runtime/live/topic_feed.h"
 #include "runtime/log/log_channels.h"
 #include "runtime/log/world_log.h"
-#include "runtime/streams/topic_feed.h"
 
 namespace gloam {
 
@@ -29,7 +29,7 @@ class LogRecorder {
   /// Messages lost because the disk was slow, real-time runs alone.
   int64_t dropped() const { return static_cast<int64_t>(channels_->queue().dropped()); }
   /// Cameras whose pictures it writes.
-  const std::vector<LiveCamera*>& cameras() const { return topics_->cameras(); }
+  std::vector<LiveCamera*> cameras() const { return topics_->cameras(); }
 
  private:
   LogRecorder(LiveSimulation& simulation, const LogRequest& request);

@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "control/controllers.h"
-#include "runtime/live_simulation.h"
+#include "runtime/live/live_simulation.h"
 #include "sim/state/state_transfer.h"
 
 namespace gloam {

@@ -10,7 +10,7 @@
 #include "gloam/log.h"
 #include "ros/codec.h"
 #include "ros/messages/gloam_msgs.h"
-#include "runtime/live_simulation.h"
+#include "runtime/live/live_simulation.h"
 #include "runtime/log/logged_runs.h"
 #include "runtime/log/run_text.h"
 #include "sim/loop/divergence.h"

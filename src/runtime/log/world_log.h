@@ -5,7 +5,7 @@
 #include <string>
 
 #include "gloam/log.h"
-#include "runtime/live_simulation.h"
+#include "runtime/live/live_simulation.h"
 #include "runtime/log/log_channels.h"
 #include "runtime/log/run_text.h"
 

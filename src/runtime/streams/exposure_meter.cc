@@ -21,7 +21,8 @@ CameraRequest probe_request(const CameraOptions& camera, std::optional<int> max_
   request.width = kProbeWidth;
   request.height = std::max(1, kProbeWidth * camera.height / camera.width);
   request.outputs = {"radiance"};
-  request.render = {.tier = "path", .spp = kProbeSamples, .max_depth = max_depth, .denoise = false};
+  request.render = {
+      .tier = RenderTier::kPath, .spp = kProbeSamples, .max_depth = max_depth, .denoise = false};
   return request;
 }
 

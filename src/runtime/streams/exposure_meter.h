@@ -7,7 +7,7 @@
 #include <memory>
 #include <mutex>
 
-#include "runtime/shared_renderer.h"
+#include "runtime/rendering/shared_renderer.h"
 #include "runtime/streams/stream_context.h"
 #include "runtime/streams/stream_thread.h"
 #include "sensors/camera/camera_sensor.h"

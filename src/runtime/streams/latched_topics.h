@@ -19,6 +19,12 @@ class LatchedTopics {
     const std::lock_guard lock(mutex_);
     return send_ ? send_(now) : Status();
   }
+  /// Changes what `send` sends, between two calls of it.
+  template <class Change>
+  Status change(const Change& change) {
+    const std::lock_guard lock(mutex_);
+    return change();
+  }
   /// Waits for a call that is under way; from now on nothing is sent.
   void close() {
     const std::lock_guard lock(mutex_);

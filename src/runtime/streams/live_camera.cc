@@ -17,7 +17,7 @@ namespace {
 std::string pictures_of(const CameraRequest& request, const Intrinsics& k) {
   const RenderOptions& render = request.render;
   return fmt::format("{} {} {}x{} {} {} {} {} {} {}", request.camera, request.rate.value(), k.width,
-                     k.height, render.tier, render.samples(), render.error.value_or(0),
+                     k.height, to_string(render.tier), render.samples(), render.error.value_or(0),
                      render.max_depth.value_or(0), render.denoise, render.ev100.value_or(NAN));
 }
 
@@ -137,9 +137,26 @@ SnapshotWindow LiveCamera::next_window() {
   }
 }
 
+void LiveCamera::set_outputs(std::vector<std::string> outputs) {
+  const std::lock_guard lock(mutex_);
+  wanted_outputs_ = std::move(outputs);
+}
+
+bool LiveCamera::has_made(const std::string& output) const {
+  return std::ranges::count(request_.outputs, output) > 0;
+}
+
+bool LiveCamera::take_outputs() {
+  const std::lock_guard lock(mutex_);
+  if (!wanted_outputs_) return false;
+  const bool is_change = *wanted_outputs_ != request_.outputs;
+  request_.outputs = *std::exchange(wanted_outputs_, {});
+  return is_change;
+}
+
 Status LiveCamera::take(const SnapshotWindow& window) {
   const auto& world = window.keys[0].data().world;
-  if (world != shared_->world) GLOAM_TRY_STATUS(follow(world));
+  if (take_outputs() || world != shared_->world) GLOAM_TRY_STATUS(follow(world));
   return capture(window);
 }
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "gloam/simulation.h"
-#include "runtime/shared_renderer.h"
+#include "runtime/rendering/shared_renderer.h"
 #include "runtime/streams/exposure_meter.h"
 #include "runtime/streams/stream_context.h"
 #include "runtime/streams/stream_thread.h"
@@ -32,6 +32,11 @@ class LiveCamera final : public CameraStream {
   void set_pose(const Pose& X_WC) override;
   Pose pose() const override;
   void refresh() override;
+  /// Other outputs from the next picture on, by their names; exposure and schedule go on. Outputs
+  /// that need another schedule end the stream. Any thread.
+  void set_outputs(std::vector<std::string> outputs);
+  /// Whether the frame that is being delivered has an output. On its thread.
+  bool has_made(const std::string& output) const;
   int64_t dropped() const override { return thread_.dropped(); }
   int64_t complete_at(int64_t from) const override { return thread_.complete_at(from); }
   void flush() override { thread_.flush(); }
@@ -54,12 +59,13 @@ class LiveCamera final : public CameraStream {
              const ExposureMeters& meters);
   Status follow(const std::shared_ptr<const CompiledWorld>& world);
   SnapshotWindow next_window();
+  bool take_outputs();
   Status take(const SnapshotWindow& window);
   Status capture(const SnapshotWindow& window);
 
   Simulator& simulator_;
   SharedRenderers& renderers_;
-  const CameraRequest request_;
+  CameraRequest request_;  // with the outputs of the present sensor
   const uint64_t seed_;
   FrameCallback on_frame_;
   const ExposureMeters& meters_;
@@ -75,7 +81,8 @@ class LiveCamera final : public CameraStream {
   PoseFrame previous_;           ///< the first of the window before
   bool has_previous_ = false;
   bool previous_is_still_ = false;  ///< it was an instant by itself, not a window
-  mutable std::mutex mutex_;        // guards sensor_ against set_pose() and pose()
+  mutable std::mutex mutex_;        // guards sensor_ against set_pose() and pose(), and the wish
+  std::optional<std::vector<std::string>> wanted_outputs_;  // instead of the present ones
   std::atomic<bool> refresh_wanted_{false};
   std::atomic<double> part_{0};  // of the picture that is being made, 0 … 1
   StreamThread thread_;          // last: it uses the others

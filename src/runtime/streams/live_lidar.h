@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "gloam/sensor.h"
-#include "runtime/shared_renderer.h"
+#include "runtime/rendering/shared_renderer.h"
 #include "runtime/streams/stream_context.h"
 #include "runtime/streams/stream_thread.h"
 #include "sensors/lidar/lidar_sensor.h"

@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include "base/text.h"
-#include "runtime/shared_renderer.h"
+#include "runtime/rendering/shared_renderer.h"
 
 namespace gloam {
 namespace {

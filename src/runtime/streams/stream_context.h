@@ -1,7 +1,7 @@
 #pragma once
 // Parts of a simulation that its streams use.
 
-#include "runtime/shared_renderer.h"
+#include "runtime/rendering/shared_renderer.h"
 #include "runtime/streams/sensor_costs.h"
 #include "sim/loop/simulator.h"
 

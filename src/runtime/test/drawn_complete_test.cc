@@ -11,7 +11,7 @@
 #include <set>
 
 #include "robots.h"
-#include "runtime/shared_renderer.h"
+#include "runtime/rendering/shared_renderer.h"
 #include "scene/test/temp_folder.h"
 #include "scenes.h"
 #include "sensors/camera/camera_sensor.h"

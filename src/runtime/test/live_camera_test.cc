@@ -94,7 +94,7 @@ TEST(LiveCamera, AViewThatClosesGivesItsPictureUp) {
   CameraRequest request = tiny("a/fixed", {50, 1});
   request.required = false;
   request.outputs = {"rgb"};
-  request.render = {.tier = "path", .spp = 65536};  // takes many seconds
+  request.render = {.tier = RenderTier::kPath, .spp = 65536};  // takes many seconds
   auto stream = open(*simulation, request, frames);
   ASSERT_TRUE(simulation->step(1).ok());
   std::this_thread::sleep_for(std::chrono::milliseconds(200));  // it has begun
@@ -106,7 +106,7 @@ TEST(LiveCamera, AViewThatClosesGivesItsPictureUp) {
 TEST(LiveCamera, TheTierFollowsThePace) {
   const TempFolder folder;
   const World world = flight(folder);
-  const auto first_image = [&](Pace pace, const std::string& tier) {
+  const auto first_image = [&](Pace pace, std::optional<RenderTier> tier) {
     auto simulation = simulate(world);
     simulation->set_pace(pace, 1);
     SlowFrames frames;
@@ -116,12 +116,12 @@ TEST(LiveCamera, TheTierFollowsThePace) {
     const auto stream = open(*simulation, request, frames);
     return frames.wait_for(1)->rgb;
   };
-  const auto path = first_image(Pace::kLockstep, "path");
-  const auto interactive = first_image(Pace::kLockstep, "interactive");
+  const auto path = first_image(Pace::kLockstep, RenderTier::kPath);
+  const auto interactive = first_image(Pace::kLockstep, RenderTier::kInteractive);
   ASSERT_NE(path, interactive);
-  EXPECT_EQ(first_image(Pace::kLockstep, ""), path);
-  EXPECT_EQ(first_image(Pace::kRealTime, ""), interactive);
-  EXPECT_EQ(first_image(Pace::kRealTime, "path"), path);
+  EXPECT_EQ(first_image(Pace::kLockstep, {}), path);
+  EXPECT_EQ(first_image(Pace::kRealTime, {}), interactive);
+  EXPECT_EQ(first_image(Pace::kRealTime, RenderTier::kPath), path);
 }
 
 // MuJoCo's own xpos lags one step behind the state; a frame's poses and depths must not.
@@ -251,7 +251,7 @@ TEST(LiveCamera, RefreshesOfAnInstantAddSamplesUntilItMoves) {
   const auto request = [](int spp, bool required) {
     CameraRequest r{.camera = "free", .rate = {10, 1}, .width = 24, .height = 18};
     r.outputs = {"rgb", "radiance"};
-    r.render = {.tier = "path", .spp = spp, .denoise = false};
+    r.render = {.tier = RenderTier::kPath, .spp = spp, .denoise = false};
     r.X_WC = Pose{{0.5, -1, 0.5}, {0.70710678, 0.70710678, 0, 0}};
     r.required = required;
     return r;
@@ -327,8 +327,6 @@ TEST(LiveCamera, WhatCannotBeOpenedSaysWhy) {
   using R = CameraRequest;
   EXPECT_NE(refused(changed([](R& r) { r.camera = "a/fixd"; })).find("a/fixed"), std::string::npos);
   EXPECT_NE(refused(changed([](R& r) { r.outputs = {"dept"}; })).find("depth"), std::string::npos);
-  EXPECT_NE(refused(changed([](R& r) { r.render.tier = "raster"; })).find("raster"),
-            std::string::npos);
   EXPECT_NE(refused(changed([](R& r) { r.rate = {-1, 1}; })).find("rate"), std::string::npos);
   EXPECT_NE(refused(changed([](R& r) { r.rate = {501, 1}; })).find("501"), std::string::npos);
   for (const auto& [width, height] : std::vector<std::pair<int, int>>{

@@ -8,7 +8,7 @@
 #include <optional>
 
 #include "gloam/run.h"
-#include "runtime/live_simulation.h"
+#include "runtime/live/live_simulation.h"
 #include "scene/test/temp_folder.h"
 #include "sim/commands/live_fields.h"
 
@@ -57,7 +57,7 @@ struct Recording {
 
 constexpr int kFrames = 4, kStepsPerFrame = 25;
 
-CameraRequest request(const std::string& tier) {
+CameraRequest request(RenderTier tier) {
   CameraRequest request;
   request.camera = "eye";
   request.width = 96;
@@ -69,7 +69,7 @@ CameraRequest request(const std::string& tier) {
 }
 
 Recording record(const World& world, const std::vector<Command>& commands,
-                 const std::string& tier = "direct") {
+                 RenderTier tier = RenderTier::kDirect) {
   Recording out;
   auto simulation = LiveSimulation::create(world, {});
   EXPECT_TRUE(simulation.ok());
@@ -249,7 +249,7 @@ TEST(LiveLookOverTime, AResetGivesTheModelsOwnLookBack) {
   std::mutex mutex;
   std::condition_variable arrived;
   std::shared_ptr<const CameraFrame> last;
-  auto camera = (*simulation)->open_camera(request("path"), [&](auto frame) {
+  auto camera = (*simulation)->open_camera(request(RenderTier::kPath), [&](auto frame) {
     const std::lock_guard lock(mutex);
     last = std::move(frame);
     arrived.notify_all();
@@ -295,11 +295,11 @@ TEST(LiveLookOverTime, AReplayOfTheLogGivesTheSamePictures) {
     commands.push_back({6 * i + 1, SetLiveField{LiveFieldId::kHeightField, i, {x}}});
     commands.push_back({5 * i, SetLiveField{LiveFieldId::kLightActive, 1, {x > .5f ? 1.f : 0.f}}});
   }
-  const Recording first = record(world, commands, "path");
+  const Recording first = record(world, commands, RenderTier::kPath);
   ASSERT_EQ(first.log.size(), commands.size());
   commands.clear();
   for (const LoggedCommand& logged : first.log) commands.push_back(logged.command);
-  const Recording again = record(world, commands, "path");
+  const Recording again = record(world, commands, RenderTier::kPath);
   for (size_t i = 0; i < kFrames; ++i)
     EXPECT_TRUE(is_same(*first.frames[i], *again.frames[i])) << "picture " << i;
 }

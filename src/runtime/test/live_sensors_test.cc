@@ -245,7 +245,7 @@ keys = [ { time = 0, level = 0.01 }, { time = 0.5, level = 0.01 }, { time = 0.50
   CameraRequest request = eye();
   request.rate = {25, 1};
   request.outputs = {"rgb"};
-  request.render = {.tier = "direct", .spp = 1, .denoise = false};
+  request.render = {.tier = RenderTier::kDirect, .spp = 1, .denoise = false};
   const auto all = frames_of(world, request, 750);
   ASSERT_EQ(all.size(), 38u);
   std::map<int64_t, double> ev;
@@ -289,7 +289,7 @@ TEST(CameraOutputs, EventsTemperaturesAndNumbersComeThroughTheStream) {
   const World world = lab(folder, kDvs);
   CameraRequest request = eye();
   request.outputs = {"events", "thermal", "raw"};
-  request.render = {.tier = "direct", .spp = 1, .denoise = false};
+  request.render = {.tier = RenderTier::kDirect, .spp = 1, .denoise = false};
   const auto frames = frames_of(world, request, 100);
   ASSERT_EQ(frames.size(), 11u);
   for (const CameraFrame& f : frames) {

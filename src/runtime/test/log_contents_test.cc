@@ -16,7 +16,7 @@
 #include "ros/codec.h"
 #include "ros/messages/sensor_msgs.h"
 #include "ros/messages/trajectory_msgs.h"
-#include "runtime/live_simulation.h"
+#include "runtime/live/live_simulation.h"
 #include "runtime/log/log_recorder.h"
 #include "runtime/log/logged_text.h"
 #include "runtime/log/run_text.h"

@@ -103,6 +103,61 @@ TEST_F(Logs, AreSteppedAgainToTheBit) {
   EXPECT_EQ(info.profile, "ros2");
 }
 
+FollowTrajectory swing_to(double position, double seconds) {
+  return {{0, 0},
+          {},
+          {.points = {{seconds / 3, {position / 2}, {0.3}, {1.0 / 7}},
+                      {seconds, {position}, {0}, {0}}}}};
+}
+
+constexpr const char* kPendulum = R"(<mujoco model="swing"><option timestep="0.002"/>
+<worldbody><light pos="0 0 3"/>
+<body name="upper" pos="0 0 1"><joint name="shoulder" axis="0 1 0" damping=".1"/>
+  <geom type="capsule" size=".05" fromto="0 0 0 .4 0 0"/></body>
+</worldbody><actuator><motor name="s" joint="shoulder"/></actuator></mujoco>)";
+
+// Replaced in motion, followed across a recompile, waiting for its step, stopped, restored.
+TEST_F(Logs, TrajectoriesAreSteppedAgainToTheBit) {
+  folder_.write("swing.xml", kPendulum);
+  folder_.write("s.toml", std::string(kLogScene) +
+                              "[robot.controller]\ntype = \"joint_position\"\nrate = 250\n");
+  auto live = simulation(world());
+  const auto post = [&](int64_t step, decltype(Command::what) what) {
+    ASSERT_TRUE(live->post({step, std::move(what)}).ok());
+  };
+  auto log = *LogRecorder::start(*live, {.file = file_});
+  post(10, swing_to(0.7, 0.4));
+  post(100, swing_to(-0.2, 0.5));
+  ASSERT_TRUE(live->step(150).ok());
+  const auto checkpoint = live->checkpoint();
+  ASSERT_TRUE(checkpoint.ok()) << checkpoint.error().to_string();
+  post(Command::kNextStep, swing_to(0.1, 0.2));
+  ASSERT_TRUE(live->step(50).ok());
+  EXPECT_EQ(live->latest().trajectory(Robot{0, 0})->start_step, 150);
+  ASSERT_TRUE(live->restore(*checkpoint).ok());
+  EXPECT_EQ(live->latest().trajectory(Robot{0, 0})->start_step, 100);
+  post(300, swing_to(0.4, 1));  // waits during the recompile
+  ASSERT_TRUE(live->step(50).ok());
+  ASSERT_TRUE(live->recompile(world()).ok());
+  ASSERT_TRUE(live->step(50).ok());
+  EXPECT_EQ(live->latest().trajectory(Robot{0, 0})->start_step, 100);
+  ASSERT_TRUE(live->step(100).ok());
+  EXPECT_EQ(live->latest().trajectory(Robot{0, 0})->start_step, 300);
+  post(Command::kNextStep, StopTrajectory{{0, 0}, {}});
+  ASSERT_TRUE(live->step(20).ok());
+  post(Command::kNextStep, ResetSim{});
+  post(5, {FollowTrajectory{
+              {0, 0}, {}, {TrajectoryProfile::kQuintic, {{0, {0.3}}, {0, {0}}}, {2}, {9}}}});
+  ASSERT_TRUE(live->step(100).ok());
+  live->simulator().stop();
+  ASSERT_TRUE(log->finish(live->latest()).ok());
+  const Result<LogVerification> found = verify_log(file_, "", {});
+  ASSERT_TRUE(found.ok()) << found.error().to_string();
+  EXPECT_TRUE(found->is_equal()) << found->where << " run " << found->run << " after step "
+                                 << found->equal_step;
+  EXPECT_EQ(found->runs, 3);
+}
+
 // Velocities, forces and a control that a controller would write, too.
 TEST_F(Logs, InputsOfStepHooksAreSteppedAgain) {
   auto live = simulation(world());
@@ -279,8 +334,9 @@ TEST_F(Logs, CommandsAreReadBackToTheBit) {
                     {.type = "joint_position", .rate = {250, 1}, .kp = 1.0 / 3, .target = {0.1}}},
       FollowTrajectory{{0, serial},
                        {{1, serial}},
-                       {TrajectoryProfile::kQuintic, {{0, {0.1}}, {0, {0.2}}}, {1.0 / 3}, {2}}},
-      StopTrajectory{{0, serial}},
+                       {TrajectoryProfile::kQuintic, {{0, {0.1}}, {0, {0.2}}}, {1.0 / 3}, {2}},
+                       -7'000'000'000'000'000'001},
+      StopTrajectory{{0, serial}, {{1, serial}}},
       SetPoseGoal{{0, serial}, {{0.1, 0.2, 0.3}, {0, 0.6, 0.8, 0}}}};
   ASSERT_EQ(all.size(), std::variant_size_v<decltype(Command::what)>);
   for (const auto& what : all) {

@@ -13,7 +13,7 @@ const char* const kUnlit = R"(<mujoco model="unlit"><worldbody>
   <body name="b" pos="0 0 0.4"><freejoint/><geom type="box" size="0.3 0.2 0.1"/></body>
 </worldbody></mujoco>)";
 
-World unlit(const TempFolder& folder, const std::string& look) {
+World unlit(const TempFolder& folder, RenderLook look) {
   auto scene = load_scene(folder.write("unlit.xml", kUnlit));
   EXPECT_TRUE(scene.ok()) << scene.error().to_string();
   scene->render.look = look;
@@ -22,7 +22,7 @@ World unlit(const TempFolder& folder, const std::string& look) {
   return std::move(*world);
 }
 
-CameraFrame picture(const World& world, const std::string& tier) {
+CameraFrame picture(const World& world, RenderTier tier) {
   CameraRequest request{.camera = "side",
                         .width = 64,
                         .height = 48,
@@ -36,9 +36,11 @@ CameraFrame picture(const World& world, const std::string& tier) {
 
 TEST(Look, ColourPicturesAloneShowTheStudio) {
   const TempFolder folder;
-  for (const std::string tier : {"path", "direct", "interactive"}) {
-    const CameraFrame studio = picture(unlit(folder, "auto"), tier);
-    const CameraFrame model = picture(unlit(folder, "model"), tier);
+  for (const RenderTier value :
+       {RenderTier::kPath, RenderTier::kDirect, RenderTier::kInteractive}) {
+    const char* const tier = to_string(value);
+    const CameraFrame studio = picture(unlit(folder, RenderLook::kAuto), value);
+    const CameraFrame model = picture(unlit(folder, RenderLook::kModel), value);
     EXPECT_NE(studio.rgb, model.rgb) << tier;
     const size_t corner = 3 * (64 * 48 - 1);
     EXPECT_GT(studio.rgb[corner], 60) << tier << ": the floor";
@@ -60,7 +62,7 @@ TEST(Look, LabelsAndTheStateKnowNothingOfTheStudio) {
   const TempFolder folder;
   std::vector<size_t> labels;
   std::vector<uint64_t> hashes;
-  for (const std::string look : {"studio", "model"}) {
+  for (const RenderLook look : {RenderLook::kStudio, RenderLook::kModel}) {
     auto simulation = Simulation::create(unlit(folder, look), {});
     ASSERT_TRUE(simulation.ok()) << simulation.error().to_string();
     auto rows = (*simulation)->labels();

@@ -33,8 +33,8 @@ struct SlowCamera {
 
 TEST(Pace, HasNames) {
   for (const Pace pace : {Pace::kFast, Pace::kLockstep, Pace::kRealTime, Pace::kSensors})
-    EXPECT_EQ(*pace_named(to_string(pace)), pace);
-  const auto wrong = pace_named("sensor");
+    EXPECT_EQ(*enum_named<Pace>(to_string(pace)), pace);
+  const auto wrong = enum_named<Pace>("sensor");
   ASSERT_FALSE(wrong.ok());
   EXPECT_THAT(wrong.error().to_string(), HasSubstr("sensors"));
 }

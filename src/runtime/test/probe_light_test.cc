@@ -158,7 +158,7 @@ camera = "fixed"
   CameraRequest request;
   request.camera = "auto";
   request.outputs = {"rgb"};
-  request.render = {.tier = "direct", .spp = 1, .denoise = false};
+  request.render = {.tier = RenderTier::kDirect, .spp = 1, .denoise = false};
   request.required = true;
   auto camera = simulation->open_camera(
       request, [&](const std::shared_ptr<const CameraFrame>& f) { shown[f->step] = f->ev100; });

@@ -11,7 +11,7 @@
 #include "ros/messages/gloam_msgs.h"
 #include "ros/messages/sensor_msgs.h"
 #include "runtime/test/probe_rig.h"
-#include "runtime/test/topic_inbox.h"
+#include "topics/test/topic_inbox.h"
 
 namespace gloam {
 namespace {

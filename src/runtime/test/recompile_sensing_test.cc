@@ -10,7 +10,7 @@
 #include <mutex>
 #include <thread>
 
-#include "runtime/live_simulation.h"
+#include "runtime/live/live_simulation.h"
 #include "scenes.h"
 
 namespace gloam {
@@ -71,7 +71,7 @@ points = 100
 CameraRequest small(const std::string& camera, Rational rate, const std::string& output) {
   CameraRequest request{.camera = camera, .rate = rate, .width = 16, .height = 12};
   request.outputs = {output};
-  request.render = {.tier = "direct", .spp = 1, .denoise = false};
+  request.render = {.tier = RenderTier::kDirect, .spp = 1, .denoise = false};
   request.required = true;
   return request;
 }

@@ -278,8 +278,9 @@ TEST_F(RecordedRun, AnInterruptedRunIsFinishedProperly) {
   const World world = flight(folder_, kCameras);
   RunRequest long_run = request("out");
   long_run.duration = 1e6;
-  int calls = 0;
-  const RunReport report = run(world, long_run, [&](const Progress&) { return ++calls < 20; });
+  const fs::path picture = long_run.out / "side/rgb/000000.png";
+  const RunReport report =
+      run(world, long_run, [&](const Progress&) { return !fs::exists(picture); });
   ASSERT_FALSE(report.status.ok());
   EXPECT_EQ(report.status.error().exit_code(), 130);
   const Json json = summary(report);

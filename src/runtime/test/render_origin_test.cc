@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "gloam/run.h"
-#include "runtime/live_simulation.h"
+#include "runtime/live/live_simulation.h"
 #include "scenes.h"
 
 namespace gloam {
@@ -74,7 +74,7 @@ CameraFrame far_picture(const World& world, const std::string& camera) {
       .width = 64,
       .height = 48,
       .outputs = {"radiance", "depth", "distance", "segmentation", "normal", "motion", "boxes"}};
-  request.render = {.tier = "path", .spp = 4, .denoise = false};
+  request.render = {.tier = RenderTier::kPath, .spp = 4, .denoise = false};
   auto frames = render_stills(world, 0.2, {request}, {});
   EXPECT_TRUE(frames.ok()) << frames.error().to_string();
   return frames->front();

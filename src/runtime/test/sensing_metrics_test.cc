@@ -1,6 +1,6 @@
 // Metrics of pictures, depths and scans against numbers that are known beforehand.
 
-#include "runtime/sensing_metrics.h"
+#include "runtime/recording/sensing_metrics.h"
 
 #include <gmock/gmock.h>
 

@@ -22,7 +22,7 @@ const std::vector<std::string> kChannels = {"rgb",    "radiance", "depth", "segm
 
 CameraRequest small(const std::string& camera) {
   CameraRequest request{.camera = camera, .width = 32, .height = 24, .outputs = kChannels};
-  request.render = {.tier = "path", .spp = 2, .denoise = false};
+  request.render = {.tier = RenderTier::kPath, .spp = 2, .denoise = false};
   return request;
 }
 
@@ -61,13 +61,15 @@ TEST(Stills, MotionCountsFromThePictureBefore) {
 
 TEST(Stills, OfTwoTimesHaveNoiseOfTheirOwn) {
   const TempFolder folder;
-  const World world = compile_text(folder, "room.toml", R"(
-[environment.bedroom]
-seed = 1
+  folder.write("ball.xml", R"(<mujoco><worldbody><light pos="0 -1 3"/>
+    <geom type="plane" size="3 3 0.1"/><geom type="sphere" pos="1 0 0.5" size="0.5"/></worldbody></mujoco>)");
+  const World world = compile_text(folder, "ball.toml", R"(
+[environment]
+file = "ball.xml"
 [[camera]]
 name = "still"
 position = [0, 0, 1.5]
-look_at = [1, 0, 1]
+look_at = [1, 0, 0.5]
 [camera.imager]
 mosaic = "none"
 [camera.imager.exposure]

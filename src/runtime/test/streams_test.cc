@@ -78,6 +78,12 @@ class Streams : public testing::Test {
     ADD_FAILURE() << "no stream " << name;
     return {};
   }
+  static std::vector<std::string> lidar_topics(const Simulation& simulation) {
+    std::vector<std::string> names;
+    for (const TopicInfo& topic : *simulation.topics())
+      if (topic.source.kind == TopicSource::Kind::kLidar) names.push_back(topic.name);
+    return names;
+  }
   Body body(const std::string& name) { return *world_.find_body(name); }
 
   TempFolder folder_;
@@ -294,6 +300,28 @@ TEST(ParseScene, NamesTheLineOfAMistakeAndFindsFilesInItsFolder) {
   const Result<Scene> missing =
       parse_scene("[[robot]]\nname = \"a\"\nfile = \"arm.xml\"", folder.path());
   EXPECT_THAT(missing.error().to_string(), HasSubstr("arm.xml"));
+}
+
+TEST_F(Streams, LossesOfAFeedCanBeReadWhileItsTopicsChange) {
+  const auto simulation = start();
+  auto feed = simulation->open_topics({.topics = {"/clock"}}, [](const TopicMessage&) {});
+  ASSERT_TRUE(feed.ok()) << feed.error().to_string();
+  std::atomic<bool> is_over{false};
+  std::thread reader([&] {
+    while (!is_over) {
+      EXPECT_EQ((*feed)->dropped(), 0);
+      EXPECT_TRUE((*feed)->status().ok());
+    }
+  });
+  const std::vector<std::string> lidars = lidar_topics(*simulation);
+  ASSERT_THAT(lidars, SizeIs(testing::Gt(1)));
+  for (int n = 0; n < 300; ++n) {
+    const std::vector<std::string> wanted =
+        n % 3 == 0 ? lidars : std::vector<std::string>{n % 3 == 1 ? "/tf" : lidars[0]};
+    ASSERT_TRUE((*feed)->set_topics(wanted).ok());
+  }
+  is_over = true;
+  reader.join();
 }
 
 }  // namespace

@@ -85,7 +85,7 @@ void gloam_run(const World& world, const mjModel& stock, Watching watching, Gloa
   if (watching.cameras) {
     // One of the model's own cameras and the free one, one of each tier.
     const std::array<std::string, 2> names = {(*simulation)->camera_names().front(), "free"};
-    const std::array<const char*, 2> tiers = {"direct", "path"};
+    const std::array<RenderTier, 2> tiers = {RenderTier::kDirect, RenderTier::kPath};
     for (size_t i = 0; i < names.size(); ++i) {
       CameraRequest request{.camera = names[i], .rate = kFrameRate, .width = 48, .height = 36};
       request.outputs = {"rgb", "depth", "segmentation"};

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "gloam/scene.h"
+#include "gloam/text.h"
 
 namespace gloam {
 
@@ -27,6 +28,12 @@ struct FieldRule {
 /// For FieldRule::choices.
 inline std::vector<std::string_view> words(std::span<const std::string_view> list) {
   return {list.begin(), list.end()};
+}
+template <NamedEnum Enum>
+std::vector<std::string_view> words() {
+  std::vector<std::string_view> list;
+  for (const auto& row : EnumTable<Enum>::kNames) list.emplace_back(row.name);
+  return list;
 }
 
 inline const FieldRule kShare{.min = 0, .max = 1};

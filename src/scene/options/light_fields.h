@@ -72,9 +72,7 @@ void visit_fields(Visitor& v, LightOptions& o) {
   const FieldRule place{.unit = "m", .min = -kLargestLength, .max = kLargestLength};
   const FieldRule length{.unit = "m", .min = kSmallestLength, .max = kLargestLength};
   v("name", o.name, FieldRule{.required = true});
-  v("type", o.type,
-    FieldRule{.required = true,
-              .choices = {"point", "spot", "directional", "rect", "disk", "sphere", "mesh"}});
+  v("type", o.type, FieldRule{.required = true, .choices = words<LightType>()});
   v("body", o.body, FieldRule{});
   v("position", o.position, place);
   v("look_at", o.look_at, place);

@@ -18,12 +18,12 @@ void visit_fields(Visitor& v, SimOptions& o) {
 
 template <class Visitor>
 void visit_fields(Visitor& v, RenderOptions& o) {
-  v("tier", o.tier, FieldRule{.choices = {"path", "interactive", "direct"}, .may_be_empty = true});
-  v("look", o.look, FieldRule{.choices = {"auto", "studio", "model"}});
+  v("tier", o.tier, FieldRule{.choices = words<RenderTier>(), .may_be_empty = true});
+  v("look", o.look, FieldRule{.choices = words<RenderLook>()});
   v("spp", o.spp, FieldRule{.min = 1, .max = 65536});
   v("error", o.error, FieldRule{.min = 1e-4, .max = 1});
   v("max_depth", o.max_depth, FieldRule{.min = 1, .max = 64});
-  v("device", o.device, FieldRule{.choices = {"auto", "cpu", "cuda"}});
+  v("device", o.device, FieldRule{.choices = words<RenderDevice>()});
   v("denoise", o.denoise, FieldRule{});
   v("ev100", o.ev100, FieldRule{.unit = "EV", .min = -30, .max = 30});
   v("groups", o.groups, FieldRule{.min = 0, .max = 5});

@@ -102,6 +102,11 @@ Json schema_of(const std::filesystem::path& value, const FieldRule& rule) {
   return schema_of(value.string(), rule);
 }
 
+template <NamedEnum Enum>
+Json schema_of(Enum value, const FieldRule& rule) {
+  return schema_of(std::string(to_string(value)), rule);
+}
+
 Json schema_of(bool value, const FieldRule& /*rule*/) {
   return {{"type", "boolean"}, {"default", value}};
 }

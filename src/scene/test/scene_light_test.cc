@@ -63,7 +63,7 @@ color = [1, 0.5, 0.25]
   ASSERT_TRUE(scene.ok()) << scene.error().to_string();
   ASSERT_EQ(scene->lights.size(), 2u);
   const LightOptions& desk = scene->lights[0];
-  EXPECT_EQ(desk.type, "spot");
+  EXPECT_EQ(desk.type, LightType::kSpot);
   EXPECT_EQ(desk.look_at, (Vec3{0, 1, 0}));
   EXPECT_EQ(desk.flux, 800);
   EXPECT_EQ(desk.ies, folder_.path() / "lamp.ies");
@@ -403,11 +403,12 @@ TEST(SceneInCode, IsHeldToTheSameRules) {
   EXPECT_THAT(error(scene), HasSubstr("'kind'"));
   scene.materials.clear();
 
-  scene.lights = {LightOptions{.name = "a", .type = "point", .flux = 1}};
+  scene.lights = {LightOptions{.name = "a", .type = LightType::kPoint, .flux = 1}};
   EXPECT_EQ(error(scene), "");
   scene.lights[0].flux = std::numeric_limits<double>::quiet_NaN();
   EXPECT_THAT(error(scene), HasSubstr("'flux'"));
-  scene.lights[0] = LightOptions{.name = "a", .type = "rect", .flux = 1, .size = {{1, -1}}};
+  scene.lights[0] =
+      LightOptions{.name = "a", .type = LightType::kRect, .flux = 1, .size = {{1, -1}}};
   EXPECT_THAT(error(scene), HasSubstr("'size'"));
   scene.lights[0] = LightOptions{.name = "a", .flux = 1};
   EXPECT_THAT(error(scene), HasSubstr("'type'"));

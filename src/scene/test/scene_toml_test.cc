@@ -87,7 +87,7 @@ outputs = ["video"]
   EXPECT_EQ(scene->cameras[0].rate, (Rational{30000, 1001}));
   EXPECT_EQ(scene->cameras[0].outputs, (std::vector<std::string>{"video", "depth_png"}));
   EXPECT_EQ(scene->pushes.at(0).velocity, (Vec3{0, 0.2, 0}));
-  EXPECT_EQ(scene->render.tier, "direct");
+  EXPECT_EQ(scene->render.tier, RenderTier::kDirect);
   EXPECT_EQ(scene->render.ev100, -2);
   EXPECT_EQ(scene->record.outputs, (std::vector<std::string>{"video"}));
 }
@@ -291,7 +291,7 @@ TEST_F(SetOption, ChangesOneOption) {
   EXPECT_EQ(set("sim.duration", "5"), "");
   EXPECT_EQ(scene_.sim.duration, 5);
   EXPECT_EQ(set("render.tier", "direct"), "");  // quotes may be left out
-  EXPECT_EQ(scene_.render.tier, "direct");
+  EXPECT_EQ(scene_.render.tier, RenderTier::kDirect);
   EXPECT_EQ(set("scene.name", "\"yard\""), "");
   EXPECT_EQ(scene_.name, "yard");
   EXPECT_EQ(set("robot.go1.controller.type", "joint_position"), "");

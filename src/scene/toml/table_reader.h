@@ -66,6 +66,21 @@ class TableReader : private ValueReader {
     if (status_->ok()) out = value;
   }
 
+  // Optional values may be written as "", which is the absent one, if their rule allows it.
+  template <NamedEnum Enum>
+  void read(const toml::node& node, const std::string& key, std::optional<Enum>& out,
+            const FieldRule& rule) {
+    std::string name;
+    read(node, key, name, rule);
+    if (status_->ok()) out = find_enum<Enum>(name);
+  }
+  template <NamedEnum Enum>
+  void read(const toml::node& node, const std::string& key, Enum& out, const FieldRule& rule) {
+    std::optional<Enum> value;
+    read(node, key, value, rule);
+    if (value) out = *value;
+  }
+
   // Arrays of plain values replace the default; arrays of tables too.
   template <class T>
   void read(const toml::node& node, const std::string& key, std::vector<T>& out,

@@ -126,9 +126,17 @@ class TableWriter {
     std::string rest = fmt::format("{:.9f}", t.second - whole).substr(1);  // ".500000000"
     put(key, fmt::format("{:02}:{:02}:{:02}{}", t.hour, t.minute, whole, rest));
   }
+  template <NamedEnum Enum>
+  void write(std::string_view key, Enum value) {
+    put(key, to_string(value));
+  }
   template <class T>
   void write(std::string_view key, std::optional<T>& value) {
     if (value) write(key, *value);
+  }
+  template <NamedEnum Enum>
+  void write(std::string_view key, std::optional<Enum>& value) {
+    put(key, to_string(value));
   }
   void write(std::string_view, std::vector<OverrideOptions>&) {}  // to_toml has lines for them
   template <class T>

@@ -85,6 +85,14 @@ class FieldChecker {
       fail(key, fmt::format("cannot be '{}'; {}", text, suggest_name(text, choices)));
     }
   }
+  template <NamedEnum Enum>
+  void check(std::string_view key, const Enum& value, const FieldRule& rule) {
+    check(key, std::string(to_string(value)), rule);
+  }
+  template <NamedEnum Enum>
+  void check(std::string_view key, const std::optional<Enum>& value, const FieldRule& rule) {
+    check(key, std::string(to_string(value)), rule);
+  }
   void check(std::string_view key, const std::filesystem::path& path, const FieldRule& rule) {
     if (rule.required && path.empty()) fail(key, "is empty");
   }
@@ -171,10 +179,11 @@ Status validate_camera(const CameraOptions& camera) {
 
 Status validate_render(const RenderOptions& render) {
   if (!render.error) return {};
-  if (!render.tier.empty() && render.tier != "path") {
-    return Error{ErrorKind::kInput,
-                 fmt::format("'error' of [render] requires the path tier, not '{}'", render.tier),
-                 render.loc, "use 'spp' alone, or set tier = \"path\""};
+  if (render.tier_or_default(false) != RenderTier::kPath) {
+    return Error{
+        ErrorKind::kInput,
+        fmt::format("'error' of [render] requires the path tier, not '{}'", to_string(render.tier)),
+        render.loc, "use 'spp' alone, or set tier = \"path\""};
   }
   if (render.samples() < 16) {
     return Error{ErrorKind::kInput,

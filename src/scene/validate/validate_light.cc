@@ -43,7 +43,6 @@ Keys given_keys(const Options& options) {
 
 /// One kind of an element: its optional keys, besides the keys of all kinds, and its required keys.
 struct Kind {
-  std::string_view name;
   Keys may, must;
 };
 
@@ -68,22 +67,26 @@ const Keys kEveryLight = {"name",  "type",        "body",   "look_at", "orientat
                           "color", "temperature", "motion", "schedule"};
 const Keys kStrengths = {"intensity", "flux", "luminance", "illuminance"};
 
-const std::vector<Kind>& light_kinds() {
-  static const std::vector<Kind> kinds = {
-      {"point", {"intensity", "flux", "luminance", "radius", "ies"}, {}},
-      {"spot", {"intensity", "flux", "luminance", "radius", "ies", "angle", "softness"}, {}},
-      {"directional", {"angle"}, {"illuminance"}},
-      {"rect", {"luminance", "flux", "intensity"}, {"size"}},
-      {"disk", {"luminance", "flux", "intensity"}, {"radius"}},
-      {"sphere", {"luminance", "flux", "intensity"}, {"radius"}},
-      {"mesh", {"luminance", "flux"}, {"file"}}};
-  return kinds;
+Kind kind_of(LightType type) {
+  switch (type) {
+    case LightType::kPoint:
+      return {{"intensity", "flux", "luminance", "radius", "ies"}, {}};
+    case LightType::kSpot:
+      return {{"intensity", "flux", "luminance", "radius", "ies", "angle", "softness"}, {}};
+    case LightType::kDirectional:
+      return {{"angle"}, {"illuminance"}};
+    case LightType::kRect:
+      return {{"luminance", "flux", "intensity"}, {"size"}};
+    case LightType::kDisk:
+    case LightType::kSphere:
+      return {{"luminance", "flux", "intensity"}, {"radius"}};
+    case LightType::kMesh:
+      return {{"luminance", "flux"}, {"file"}};
+  }
+  return {};
 }
 
-bool is_area(const LightOptions& light) {
-  return light.type == "rect" || light.type == "disk" || light.type == "sphere" ||
-         light.type == "mesh";
-}
+bool is_area(const LightOptions& light) { return light.type && is_area_light(*light.type); }
 
 Status check_strength(const LightOptions& light, const Keys& given, const std::string& what) {
   const auto error = [&](std::string message, std::string hint = {}) {
@@ -159,15 +162,13 @@ bool is_clock(const ClockTime& t) {
 }  // namespace
 
 Status validate_light(const LightOptions& light) {
-  const std::string what = fmt::format("light '{}' of type {}", light.name, light.type);
+  const std::string what = fmt::format("light '{}' of type {}", light.name, to_string(light.type));
   const auto error = [&](std::string message, std::string hint = {}) {
     return Error{ErrorKind::kInput, std::move(message), light.loc, std::move(hint)};
   };
   const Keys given = given_keys(light);
-  for (const Kind& kind : light_kinds()) {
-    if (kind.name == light.type)
-      GLOAM_TRY_STATUS(check_kind(kind, kEveryLight, given, what, light.loc));
-  }
+  if (light.type)
+    GLOAM_TRY_STATUS(check_kind(kind_of(*light.type), kEveryLight, given, what, light.loc));
   GLOAM_TRY_STATUS(check_strength(light, given, what));
   GLOAM_TRY_STATUS(check_pose(light, what));
   if (light.motion) {
@@ -187,10 +188,10 @@ Status validate_light(const LightOptions& light) {
     return error(fmt::format("{} always casts shadows", what),
                  "only point, spot and directional lights can do without");
   }
-  if (light.type == "spot" && light.angle && *light.angle <= 0)
+  if (light.type == LightType::kSpot && light.angle && *light.angle <= 0)
     return error(fmt::format("{} has a cone of 0 degrees", what),
                  "'angle' is the half angle of the cone");
-  if (light.type == "directional" && light.angle.value_or(0) > 90)
+  if (light.type == LightType::kDirectional && light.angle.value_or(0) > 90)
     return error(fmt::format("{} is {} degrees wide; the maximum is 90", what, *light.angle));
   return {};
 }
@@ -208,21 +209,20 @@ Status validate_sky(const SkyOptions& sky) {
   if (!sky.file.empty()) {
     if (sky.scale && sky.illuminance)
       return error("[sky] has both 'scale' and 'illuminance'", "specify only one of them");
-    return check_kind({"file", {"scale", "illuminance", "turn"}, {"file"}}, {}, given,
+    return check_kind({{"scale", "illuminance", "turn"}, {"file"}}, {}, given,
                       "a [sky] from a file", sky.loc);
   }
   if (sky.luminance) {
     if (is_black(sky.color)) return error("[sky] has the colour black, which has no hue");
-    return check_kind({"even", {"color"}, {"luminance"}}, {}, given, "a uniform [sky]", sky.loc);
+    return check_kind({{"color"}, {"luminance"}}, {}, given, "a uniform [sky]", sky.loc);
   }
   const Keys air = {"turbidity", "ground_albedo", "altitude", "north"};
   if (sky.sun_elevation || sky.sun_azimuth) {
-    return check_kind({"sun", {"sun_azimuth"}, {"sun_elevation"}}, air, given,
+    return check_kind({{"sun_azimuth"}, {"sun_elevation"}}, air, given,
                       "a [sky] with a sun position", sky.loc);
   }
-  GLOAM_TRY_STATUS(
-      check_kind({"place", {"utc_offset", "speed"}, {"date", "time", "latitude", "longitude"}}, air,
-                 given, "a [sky] with date and place", sky.loc));
+  GLOAM_TRY_STATUS(check_kind({{"utc_offset", "speed"}, {"date", "time", "latitude", "longitude"}},
+                              air, given, "a [sky] with date and place", sky.loc));
   if (!is_day(*sky.date)) {
     return error(fmt::format("{:04}-{:02}-{:02} is not a date from 1900 to 2100", sky.date->year,
                              sky.date->month, sky.date->day));

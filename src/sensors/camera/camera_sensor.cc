@@ -68,7 +68,7 @@ Status check_numbers(const CameraRequest& request) {
   }
   if (render.error && !(*render.error >= 1e-4 && *render.error <= 1))
     return refuse(fmt::format("error = {} is not in 0.0001 … 1", *render.error));
-  if (render.error && render.tier_or_default(false) != "path")
+  if (render.error && render.tier_or_default(false) != RenderTier::kPath)
     return refuse("'error' requires the path tier");
   if (const int depth = request.render.max_depth.value_or(1); depth < 1 || depth > 64)
     return refuse(fmt::format("max_depth = {} is not in 1 … 64", depth));
@@ -95,7 +95,8 @@ int path_depth(const RenderOptions& render, bool has_media) {
   constexpr int kDefaultDepth = 5, kInteractiveDepth = 8, kDepthInMedia = 24;
   if (render.max_depth) return *render.max_depth;
   if (has_media) return kDepthInMedia;
-  return render.tier_or_default(false) == "interactive" ? kInteractiveDepth : kDefaultDepth;
+  return render.tier_or_default(false) == RenderTier::kInteractive ? kInteractiveDepth
+                                                                   : kDefaultDepth;
 }
 
 Pose to_pose(const Affine3f& X) { return {{X.p.x, X.p.y, X.p.z}, quaternion_of(X)}; }
@@ -155,19 +156,7 @@ Result<std::unique_ptr<CameraSensor>> CameraSensor::create(const RenderDescripti
                            described.aperture_radius, sensor_seed(seed, request.camera));
   }
   RenderSettings& settings = sensor->settings_;
-  const std::string tier = request.render.tier_or_default(false);
-  if (tier == "path") {
-    settings.tier = RenderTier::kPath;
-  } else if (tier == "interactive") {
-    settings.tier = RenderTier::kInteractive;
-  } else if (tier == "direct") {
-    settings.tier = RenderTier::kDirect;
-  } else {
-    return Error{ErrorKind::kInput,
-                 fmt::format("there is no render tier '{}'", tier),
-                 {},
-                 "one of: path, interactive, direct"};
-  }
+  settings.tier = request.render.tier_or_default(false);
   settings.spp = channels.light() ? request.render.samples() : 0;
   if (request.render.error && channels.light()) {
     // Darker than this fraction of the display's top, an error shows less and less (docs/light.md).

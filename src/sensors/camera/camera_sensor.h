@@ -134,10 +134,10 @@ class CameraSensor {
   std::unique_ptr<CameraModels> models_;  // models after the light
   std::unique_ptr<ViewHistory> history_;  // history of the interactive tier
   std::optional<LensDrops> drops_;
-  bool denoises_ = false;               // false: the samples as they are
-  std::string device_;                  // of the renderer
-  bool needs_exact_ = false;            // exact channels, by outputs or particles
-  bool needs_details_ = false;          // their details, by outputs
+  bool denoises_ = false;                      // false: the samples as they are
+  RenderDevice device_ = RenderDevice::kAuto;  // of the renderer
+  bool needs_exact_ = false;                   // exact channels, by outputs or particles
+  bool needs_details_ = false;                 // their details, by outputs
   std::unique_ptr<Denoiser> denoiser_;  // where the renderer does not denoise; made when needed
   Film film_;
   std::vector<Vec3f> clean_;

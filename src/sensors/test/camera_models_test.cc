@@ -175,7 +175,7 @@ TEST_F(CameraModelsTest, DarkAndShinyThingsSendTheProjectorsLightAway) {
 TEST_F(CameraModelsTest, AStillSceneMakesNoEventsButTheirNoise) {
   load(camera("quiet", "events = { threshold = 0.1 }\n") + camera("plain") +
        camera("noisy", "events = { threshold = 0.1, noise_rate = 5 }\n"));
-  const auto frames = [&](const char* name, const char* tier, const char* output) {
+  const auto frames = [&](const char* name, RenderTier tier, const char* output) {
     CameraRequest request{.camera = name};
     request.outputs = {output};
     request.render = {.tier = tier, .spp = 2, .denoise = false};
@@ -188,18 +188,18 @@ TEST_F(CameraModelsTest, AStillSceneMakesNoEventsButTheirNoise) {
     }
     return out;
   };
-  const auto plain = frames("plain", "path", "radiance");
+  const auto plain = frames("plain", RenderTier::kPath, "radiance");
   size_t changed = 0;
   for (size_t i = 0; i < plain[0]->radiance.size(); ++i)
     changed += std::abs(std::log((plain[0]->radiance[i] + 1) / (plain[1]->radiance[i] + 1))) > 0.1f;
   EXPECT_GT(changed, 500u) << "the scene must have noise for this test to mean something";
-  for (const char* tier : {"path", "direct"}) {
+  for (const RenderTier tier : {RenderTier::kPath, RenderTier::kDirect}) {
     for (const auto& frame : frames("quiet", tier, "events"))
-      EXPECT_EQ(frame->events.size(), 0u) << tier << ", frame " << frame->index;
+      EXPECT_EQ(frame->events.size(), 0u) << to_string(tier) << ", frame " << frame->index;
     size_t noise = 0;
     for (const auto& frame : frames("noisy", tier, "events")) noise += frame->events.size();
     const double mean = 5 * 0.08 * 120 * 90;
-    expect_within(static_cast<double>(noise), mean, std::sqrt(mean), tier);
+    expect_within(static_cast<double>(noise), mean, std::sqrt(mean), to_string(tier));
   }
 }
 

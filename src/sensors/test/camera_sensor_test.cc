@@ -70,7 +70,7 @@ class CameraSensorTest : public ::testing::Test {
   static CameraRequest ask(const std::string& camera, std::vector<std::string> outputs) {
     CameraRequest request{.camera = camera, .width = 64, .height = 48};
     request.outputs = std::move(outputs);
-    request.render = {.tier = "path", .spp = 2, .denoise = false};
+    request.render = {.tier = RenderTier::kPath, .spp = 2, .denoise = false};
     return request;
   }
   std::unique_ptr<CameraSensor> make(const CameraRequest& request, uint64_t seed = 1) const {
@@ -102,11 +102,11 @@ class CameraSensorTest : public ::testing::Test {
 // A picture that other sensors interrupt, at other instants, is the same to the last bit.
 TEST_F(CameraSensorTest, PicturesDoNotDependOnWhoRendersInBetween) {
   const PoseFrame now = poses_at(0), later = poses_at(50), last = poses_at(100);
-  for (const char* tier : {"path", "direct", "interactive"}) {
+  for (const RenderTier tier : {RenderTier::kPath, RenderTier::kDirect, RenderTier::kInteractive}) {
     CameraRequest request = ask("plain", {"radiance", "depth", "segmentation", "boxes"});
     request.width = 320;
     request.height = 240;
-    request.render = {.tier = tier, .spp = 8, .denoise = std::string(tier) == "direct"};
+    request.render = {.tier = tier, .spp = 8, .denoise = tier == RenderTier::kDirect};
     const auto alone = capture(*make(request), now, now);
     std::atomic<bool> ends{false};
     std::atomic<int> turns{0};
@@ -122,9 +122,9 @@ TEST_F(CameraSensorTest, PicturesDoNotDependOnWhoRendersInBetween) {
     const auto beside = capture(*make(request), now, now);
     ends = true;
     other.join();
-    EXPECT_EQ(alone->radiance, beside->radiance) << tier;
-    EXPECT_EQ(alone->depth, beside->depth) << tier;
-    EXPECT_EQ(alone->instance, beside->instance) << tier;
+    EXPECT_EQ(alone->radiance, beside->radiance) << to_string(tier);
+    EXPECT_EQ(alone->depth, beside->depth) << to_string(tier);
+    EXPECT_EQ(alone->instance, beside->instance) << to_string(tier);
   }
 }
 
@@ -288,7 +288,6 @@ TEST_F(CameraSensorTest, WhatItCannotDoIsAnError) {
   const std::vector<Case> cases = {
       {"plain", [](CameraRequest& r) { r.camera = "plane"; }},
       {"segmentation", [](CameraRequest& r) { r.outputs = {"segmentatoin"}; }},
-      {"direct", [](CameraRequest& r) { r.render.tier = "raster"; }},
       {"rate", [](CameraRequest& r) { r.rate = {-1, 1}; }},
       {"rate", [](CameraRequest& r) { r.rate = {1, 0}; }},
       {"0 x 48", [](CameraRequest& r) { r.width = 0; }},
@@ -299,7 +298,7 @@ TEST_F(CameraSensorTest, WhatItCannotDoIsAnError) {
       {"error", [](CameraRequest& r) { r.render.error = std::nan(""); }},
       {"path tier",
        [](CameraRequest& r) {
-         r.render.tier = "direct";
+         r.render.tier = RenderTier::kDirect;
          r.render.spp = 64;
          r.render.error = 0.1;
        }},

@@ -32,7 +32,7 @@ class AppliedInputs {
   void apply(const mjModel&, mjData&, const SetJointGoal& command) { joints_.apply(command); }
   void apply(const mjModel&, mjData&, const SetJointCommand& command) { joints_.apply(command); }
   void apply(const mjModel& model, mjData& data, const StopTrajectory& command) {
-    joints_.stop(command.robot.id, model, data);
+    joints_.stop(command, model, data);
   }
 
   JointInputs& joints() { return joints_; }

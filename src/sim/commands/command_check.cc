@@ -132,13 +132,16 @@ class Check {
     GLOAM_TRY_STATUS(check_handle(c.robot, "robot", 0, robot_count_));
     GLOAM_TRY_STATUS(check_joints(c.robot, c.joints));
     const std::vector<Joint> joints = joints_of_command(world_, c.robot, c.joints);
-    for (const TrajectoryPoint& point : c.trajectory.points)
-      for (size_t i = 0; i < std::min(joints.size(), point.positions.size()); ++i)
-        GLOAM_TRY_STATUS(check_range(joints[i].id, point.positions[i]));
+    for (size_t k = 0; k < c.trajectory.points.size(); ++k) {
+      const std::vector<double>& positions = c.trajectory.points[k].positions;
+      for (size_t i = 0; i < std::min(joints.size(), positions.size()); ++i)
+        GLOAM_TRY_STATUS(check_range(joints[i].id, k, positions[i]));
+    }
     return {};
   }
   Status operator()(const StopTrajectory& c) const {
-    return check_handle(c.robot, "robot", 0, robot_count_);
+    GLOAM_TRY_STATUS(check_handle(c.robot, "robot", 0, robot_count_));
+    return c.joints.empty() ? Status() : check_joints(c.robot, c.joints);
   }
   Status operator()(const SetPoseGoal& c) const {
     GLOAM_TRY_STATUS(check_handle(c.robot, "robot", 0, robot_count_));
@@ -226,13 +229,13 @@ class Check {
     return {};
   }
   // Joints stop softly: a goal at the very end of the range may round beyond it.
-  Status check_range(int joint, double position) const {
+  Status check_range(int joint, size_t point, double position) const {
     if (!model_.jnt_limited[joint]) return {};
     const double low = model_.jnt_range[2 * joint], high = model_.jnt_range[2 * joint + 1];
     const double slack = 1e-3 * (high - low);
     if (!(position < low - slack || position > high + slack)) return {};
-    return refuse(fmt::format("position {:g} of {} is outside its range, {:g} to {:g}", position,
-                              joint_name(joint), low, high));
+    return refuse(fmt::format("position {:g} of {} in point {} is outside its range, {:g} to {:g}",
+                              position, joint_name(joint), point, low, high));
   }
   Status check_body(Body body) const { return check_handle(body, "movable body", 1, model_.nbody); }
 

@@ -7,6 +7,27 @@
 #include <utility>
 
 namespace gloam {
+namespace {
+
+// Whether a robot's trajectory moves one of `joints`; empty = all.
+bool moves_any(const FollowTrajectory& waiting, const std::vector<Joint>& joints) {
+  if (joints.empty() || waiting.joints.empty()) return true;
+  return std::ranges::any_of(joints, [&](Joint joint) {
+    return std::ranges::find(waiting.joints, joint.id, &Joint::id) != waiting.joints.end();
+  });
+}
+
+// Whether a Command replaces another one that has not applied yet.
+bool replaces(const Command& command, const Command& waiting) {
+  const auto* other = std::get_if<FollowTrajectory>(&waiting.what);
+  if (other == nullptr) return false;
+  if (const auto* follow = std::get_if<FollowTrajectory>(&command.what))
+    return follow->robot.id == other->robot.id && moves_any(*other, follow->joints);
+  const auto* stop = std::get_if<StopTrajectory>(&command.what);
+  return stop != nullptr && stop->robot.id == other->robot.id && moves_any(*other, stop->joints);
+}
+
+}  // namespace
 
 CommandQueue::CommandQueue(int capacity, int64_t log_capacity)
     : arrivals_(capacity), log_capacity_(log_capacity) {}
@@ -149,6 +170,21 @@ void CommandQueue::discard_before(int64_t arrival) {
       // Its step counts from the reset; "next step" is step 0.
       node->due = std::max<int64_t>(node->command.step, 0);
       insert(node);
+    }
+  }
+}
+
+void CommandQueue::discard_trajectories(const Node& by) {
+  Node** place = &pending_;
+  pending_tail_ = nullptr;
+  while (Node* const node = *place) {
+    if (node->arrival < by.arrival && replaces(by.command, node->command)) {
+      *place = node->next;
+      discarded_.fetch_add(1, std::memory_order_relaxed);
+      retire(node);
+    } else {
+      pending_tail_ = node;
+      place = &node->next;
     }
   }
 }

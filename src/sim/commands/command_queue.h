@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "gloam/command.h"
-#include "sim/commands/bounded_queue.h"
+#include "sim/commands/lock_free_queue.h"
 #include "sim/loop/prepared_input.h"
 
 namespace gloam {
@@ -47,7 +47,8 @@ class CommandQueue {
   /// What the log does not hold, so that a replay of it would not be exact: commands that found it
   /// full, recompiles.
   int64_t log_lost() const { return log_lost_.load(std::memory_order_relaxed); }
-  /// Commands for later steps that a reset threw away, or a recompile that took their thing away.
+  /// Commands for later steps that a reset threw away, a recompile that took their thing away, or
+  /// a later trajectory that replaced theirs.
   int64_t discarded() const { return discarded_.load(std::memory_order_relaxed); }
 
   // ---- the sim thread ----
@@ -66,6 +67,7 @@ class CommandQueue {
       const bool reset = std::holds_alternative<ResetSim>(node->command.what);
       if (!reset) apply(static_cast<const Command&>(node->command), node->prepared);
       if (reset) discard_before(node->arrival);
+      if (ends_trajectories(node->command)) discard_trajectories(*node);
       log(node, run, step);
       if (reset) return true;
     }
@@ -112,14 +114,19 @@ class CommandQueue {
   void insert(Node* node);
   Node* pop_pending();
   void discard_before(int64_t arrival);
+  static bool ends_trajectories(const Command& command) {
+    return std::holds_alternative<FollowTrajectory>(command.what) ||
+           std::holds_alternative<StopTrajectory>(command.what);
+  }
+  void discard_trajectories(const Node& by);
   void log(Node* node, int64_t run, int64_t step);
   void retire(Node* node);
   void drain_log();
   static void push(std::atomic<Node*>& stack, Node* node);
   static void delete_list(Node* node);
 
-  BoundedQueue<Node*> arrivals_;  // of lists
-  Node* pending_ = nullptr;       // sorted by (due, arrival)
+  LockFreeQueue<Node*> arrivals_;  // of lists
+  Node* pending_ = nullptr;        // sorted by (due, arrival)
   Node* pending_tail_ = nullptr;
   int64_t arrival_count_ = 0;
   int64_t log_capacity_;

@@ -17,20 +17,32 @@ std::vector<Joint> single_joints(const mjModel& model, const RobotInstance& robo
   return joints;
 }
 
-bool moves(const ActiveTrajectory& trajectory, Joint joint) {
-  return std::ranges::find(trajectory.joints, joint.id, &Joint::id) != trajectory.joints.end();
-}
+/// The trajectories of a World before, with the ids of their joints in the one after.
+class TranslatedTrajectories {
+ public:
+  explicit TranslatedTrajectories(const Correspondence& same) : same_(same) {}
 
-// Ids of `joints` in the World after; empty if one is gone.
-std::vector<Joint> translated(const std::vector<Joint>& joints, const Correspondence& same) {
-  std::vector<Joint> after;
-  for (const Joint joint : joints) {
-    const auto found = std::ranges::find(same.joint, joint.id);
-    if (found == same.joint.end()) return {};
-    after.push_back({static_cast<int>(found - same.joint.begin()), same.after.serial});
+  /// Null: one of its joints is gone.
+  std::shared_ptr<ActiveTrajectory> operator()(
+      const std::shared_ptr<ActiveTrajectory>& trajectory) {
+    for (const auto& [before, after] : made_)
+      if (before == trajectory.get()) return after;
+    auto after = std::make_shared<ActiveTrajectory>(*trajectory);
+    for (Joint& joint : after->joints) {
+      const auto found = std::ranges::find(same_.joint, joint.id);
+      if (found == same_.joint.end()) {
+        after = nullptr;
+        break;
+      }
+      joint = {static_cast<int>(found - same_.joint.begin()), same_.after.serial};
+    }
+    return made_.emplace_back(trajectory.get(), after).second;
   }
-  return after;
-}
+
+ private:
+  const Correspondence& same_;
+  std::vector<std::pair<const ActiveTrajectory*, std::shared_ptr<ActiveTrajectory>>> made_;
+};
 
 }  // namespace
 
@@ -41,14 +53,10 @@ std::vector<Joint> joints_of_command(const CompiledWorld& world, Robot robot,
 }
 
 JointInputs::JointInputs(const CompiledWorld& world, const mjModel& model)
-    : targets_(static_cast<size_t>(model.njnt)),
-      robot_of_joint_(static_cast<size_t>(model.njnt), -1) {
+    : targets_(static_cast<size_t>(model.njnt)), followed_(static_cast<size_t>(model.njnt)) {
   for (const RobotInstance& robot : world.robots) {
-    RobotInputs& inputs = robots_.emplace_back();
-    inputs.joints = single_joints(model, robot);
-    start_.resize(std::max(start_.size(), inputs.joints.size()));
-    for (const Joint joint : inputs.joints)
-      robot_of_joint_[static_cast<size_t>(joint.id)] = static_cast<int>(robots_.size()) - 1;
+    joints_.push_back(single_joints(model, robot));
+    start_.resize(std::max(start_.size(), joints_.back().size()));
   }
 }
 
@@ -56,101 +64,98 @@ void JointInputs::take_over(const JointInputs& before, const Correspondence& sam
   for (size_t joint = 0; joint < targets_.size(); ++joint)
     if (const int old = same.joint[joint]; old >= 0)
       targets_[joint] = before.targets_[static_cast<size_t>(old)];
-  for (size_t robot = 0; robot < robots_.size(); ++robot) {
-    const int old = same.robot[robot];
-    if (old < 0 || before.trajectory(old) == nullptr) continue;
-    ActiveTrajectory next = *before.trajectory(old);
-    next.joints = translated(next.joints, same);
-    if (next.joints.empty()) continue;
-    robots_[robot].trajectory = std::make_shared<ActiveTrajectory>(std::move(next));
-    robots_[robot].is_valid = true;
-    robots_[robot].is_over = before.of(old).is_over;
+  TranslatedTrajectories translated(same);
+  for (const std::vector<Joint>& joints : joints_) {
+    for (const Joint joint : joints) {
+      const int old = same.joint[static_cast<size_t>(joint.id)];
+      if (old < 0 || !before.followed_[static_cast<size_t>(old)].is_valid) continue;
+      Followed& next = followed(joint) = before.followed_[static_cast<size_t>(old)];
+      next.trajectory = translated(next.trajectory);
+      if (next.trajectory == nullptr) leave_trajectory(joint);
+    }
   }
 }
 
 void JointInputs::reset() {
   std::ranges::fill(targets_, JointTarget{});
-  for (RobotInputs& robot : robots_) robot.is_valid = false;
+  for (Followed& followed : followed_) followed.is_valid = false;
 }
 
 void JointInputs::reset(int robot) {
-  of(robot).is_valid = false;
-  for (const Joint joint : of(robot).joints) target(joint) = {};
+  for (const Joint joint : joints(robot)) {
+    followed(joint).is_valid = false;
+    target(joint) = {};
+  }
 }
 
-void JointInputs::leave_trajectory(RobotInputs* robot, Joint joint) {
-  if (robot->is_valid && moves(*robot->trajectory, joint)) robot->is_valid = false;
+// The position target stays. The velocity target is the trajectory's and would pull the joint
+// indefinitely.
+void JointInputs::leave_trajectory(Joint joint) {
+  if (!followed(joint).is_valid) return;
+  followed(joint).is_valid = false;
+  target(joint).velocity = JointTarget::kNone;
 }
 
 void JointInputs::apply(const SetJointGoal& command) {
+  leave_trajectory(command.joint);
   target(command.joint).position = command.position;
-  const int robot = robot_of_joint_[static_cast<size_t>(command.joint.id)];
-  if (robot >= 0) leave_trajectory(&of(robot), command.joint);
 }
 
 void JointInputs::apply(const SetJointCommand& command) {
-  RobotInputs& robot = of(command.robot.id);
-  const std::vector<Joint>& joints = command.joints.empty() ? robot.joints : command.joints;
+  const std::vector<Joint>& all =
+      command.joints.empty() ? joints(command.robot.id) : command.joints;
+  if (!command.position.empty() || !command.velocity.empty())
+    for (const Joint joint : all) leave_trajectory(joint);
   const auto set = [&](const std::vector<double>& values, double JointTarget::* field) {
-    for (size_t i = 0; i < values.size(); ++i) target(joints[i]).*field = values[i];
+    for (size_t i = 0; i < values.size(); ++i) target(all[i]).*field = values[i];
   };
   set(command.position, &JointTarget::position);
   set(command.velocity, &JointTarget::velocity);
   set(command.effort, &JointTarget::effort);
   set(command.kp, &JointTarget::kp);
   set(command.kd, &JointTarget::kd);
-  if (command.position.empty() && command.velocity.empty()) return;
-  for (const Joint joint : joints) leave_trajectory(&robot, joint);
+}
+
+JointSample JointInputs::start_of(Joint joint, const mjModel& model, const mjData& data) {
+  if (followed(joint).is_moving()) return followed(joint).at(data.time);
+  const JointTarget& now = target(joint);
+  return {std::isfinite(now.position) ? now.position : data.qpos[model.jnt_qposadr[joint.id]],
+          std::isfinite(now.velocity) ? now.velocity : 0};
 }
 
 void JointInputs::follow(int robot, const mjModel& model, const mjData& data, int64_t step,
-                         std::shared_ptr<ActiveTrajectory>* next) {
-  RobotInputs& inputs = of(robot);
-  ActiveTrajectory& trajectory = **next;
-  const double time = data.time;
-  update(robot, time);
-  const bool continues = inputs.is_valid && !inputs.is_over;
-  for (size_t i = 0; i < trajectory.joints.size(); ++i) {
-    const Joint joint = trajectory.joints[i];
-    const JointTarget& now = target(joint);
-    JointSample& start = start_[i];
-    start = {std::isfinite(now.position) ? now.position : data.qpos[model.jnt_qposadr[joint.id]],
-             std::isfinite(now.velocity) ? now.velocity : 0};
-    if (!continues) continue;
-    const auto same = std::ranges::find(inputs.trajectory->joints, joint.id, &Joint::id);
-    if (same != inputs.trajectory->joints.end())
-      start = inputs.trajectory->at(time,
-                                    static_cast<size_t>(same - inputs.trajectory->joints.begin()));
-  }
-  trajectory.path.begin({start_.data(), trajectory.joints.size()});
+                         NextTrajectory* next) {
+  update(robot, data.time);
+  ActiveTrajectory& trajectory = *next->trajectory;
+  const size_t count = trajectory.joints.size();
+  for (size_t i = 0; i < count; ++i) start_[i] = start_of(trajectory.joints[i], model, data);
+  trajectory.path.begin({start_.data(), count});
   trajectory.start_step = step;
-  trajectory.start_time = time;
-  std::swap(inputs.trajectory, *next);
-  inputs.is_valid = true;
-  inputs.is_over = false;
+  trajectory.start_time = data.time;
+  for (size_t i = 0; i < count; ++i) {
+    Followed& joint = followed(trajectory.joints[i]);
+    std::swap(joint.trajectory, next->replaced[i]);
+    joint = {next->trajectory, i, true, false};
+  }
 }
 
-void JointInputs::stop(int robot, const mjModel& model, const mjData& data) {
-  RobotInputs& inputs = of(robot);
-  if (!inputs.is_valid) return;
-  inputs.is_valid = false;
-  if (inputs.is_over) return;  // its joints have their goals
-  for (const Joint joint : inputs.trajectory->joints) {
-    target(joint).position = data.qpos[model.jnt_qposadr[joint.id]];
-    target(joint).velocity = JointTarget::kNone;
+void JointInputs::stop(const StopTrajectory& command, const mjModel& model, const mjData& data) {
+  for (const Joint joint : command.joints.empty() ? joints(command.robot.id) : command.joints) {
+    const bool was_moving = followed(joint).is_moving();  // else it has its goal
+    leave_trajectory(joint);
+    if (was_moving) target(joint).position = data.qpos[model.jnt_qposadr[joint.id]];
   }
 }
 
 void JointInputs::update(int robot, double time) {
-  RobotInputs& inputs = of(robot);
-  if (!inputs.is_valid || inputs.is_over) return;
-  const ActiveTrajectory& trajectory = *inputs.trajectory;
-  for (size_t i = 0; i < trajectory.joints.size(); ++i) {
-    const JointSample sample = trajectory.at(time, i);
-    target(trajectory.joints[i]).position = sample.position;
-    target(trajectory.joints[i]).velocity = sample.velocity;
+  for (const Joint joint : joints(robot)) {
+    Followed& now = followed(joint);
+    if (!now.is_moving()) continue;
+    const JointSample sample = now.at(time);
+    target(joint).position = sample.position;
+    target(joint).velocity = sample.velocity;
+    now.is_over = time >= now.trajectory->end_time();
   }
-  inputs.is_over = time >= trajectory.end_time();
 }
 
 }  // namespace gloam

@@ -1,6 +1,7 @@
 #pragma once
 // Targets of joints and trajectories that Commands have given to the robots of a simulation. Called
-// on the sim thread only; allocates nothing but in take_over().
+// on the sim thread only; allocates nothing but in take_over(). The cost of no function depends on
+// the length of a trajectory, except for the binary search of the present point.
 
 #include <mujoco/mujoco.h>
 
@@ -14,48 +15,60 @@
 
 namespace gloam {
 
+/// A trajectory that is about to start.
+struct NextTrajectory {
+  std::shared_ptr<ActiveTrajectory> trajectory;
+  /// Gets the trajectories that its joints leave, whose memory is then released on another thread,
+  /// (joints).
+  std::vector<std::shared_ptr<ActiveTrajectory>> replaced;
+};
+
 class JointInputs {
  public:
   JointInputs(const CompiledWorld& world, const mjModel& model);
 
   /// Continues from those of another World, for the joints that remain. A trajectory that moves a
-  /// removed joint ends.
+  /// removed joint ends; its other joints hold their targets.
   void take_over(const JointInputs& before, const Correspondence& same);
   void reset();
-  /// Forgets the targets and ends the trajectory of a robot.
+  /// Forgets the targets and ends the trajectories of a robot.
   void reset(int robot);
 
   void apply(const SetJointGoal& command);
   void apply(const SetJointCommand& command);
-  /// Starts `next` before `step`. `next` gets the trajectory that it replaces, whose memory is then
-  /// released on another thread.
+  /// Starts `next` before `step`.
   void follow(int robot, const mjModel& model, const mjData& data, int64_t step,
-              std::shared_ptr<ActiveTrajectory>* next);
-  void stop(int robot, const mjModel& model, const mjData& data);
-  /// Sets the targets of a robot from its trajectory at a time [s].
+              NextTrajectory* next);
+  void stop(const StopTrajectory& command, const mjModel& model, const mjData& data);
+  /// Sets the targets of a robot from its trajectories at a time [s].
   void update(int robot, double time);
 
   std::span<const JointTarget> targets() const { return targets_; }
-  /// The trajectory of a robot, also after its end; null = none.
-  const std::shared_ptr<ActiveTrajectory>& trajectory(int robot) const {
-    return of(robot).is_valid ? of(robot).trajectory : none_;
+  /// The trajectory of a joint, also after its end; null = none.
+  const std::shared_ptr<ActiveTrajectory>& trajectory(size_t joint) const {
+    return followed_[joint].is_valid ? followed_[joint].trajectory : none_;
   }
 
  private:
-  struct RobotInputs {
-    std::vector<Joint> joints;                     // hinges and slides
+  /// The trajectory that a joint follows.
+  struct Followed {
     std::shared_ptr<ActiveTrajectory> trajectory;  // stays until replaced, so nothing is freed here
+    size_t index = 0;                              // of the joint in it
     bool is_valid = false, is_over = false;
-  };
-  RobotInputs& of(int robot) { return robots_[static_cast<size_t>(robot)]; }
-  const RobotInputs& of(int robot) const { return robots_[static_cast<size_t>(robot)]; }
-  JointTarget& target(Joint joint) { return targets_[static_cast<size_t>(joint.id)]; }
-  void leave_trajectory(RobotInputs* robot, Joint joint);
 
-  std::vector<JointTarget> targets_;  // by joint
-  std::vector<RobotInputs> robots_;
-  std::vector<int> robot_of_joint_;  // -1 = none
-  std::vector<JointSample> start_;   // of follow(), (most joints of a robot)
+    bool is_moving() const { return is_valid && !is_over; }
+    JointSample at(double time) const { return trajectory->at(time, index); }
+  };
+  const std::vector<Joint>& joints(int robot) const { return joints_[static_cast<size_t>(robot)]; }
+  JointTarget& target(Joint joint) { return targets_[static_cast<size_t>(joint.id)]; }
+  Followed& followed(Joint joint) { return followed_[static_cast<size_t>(joint.id)]; }
+  JointSample start_of(Joint joint, const mjModel& model, const mjData& data);
+  void leave_trajectory(Joint joint);
+
+  std::vector<JointTarget> targets_;        // by joint
+  std::vector<Followed> followed_;          // by joint
+  std::vector<std::vector<Joint>> joints_;  // hinges and slides, by robot
+  std::vector<JointSample> start_;          // of follow(), (most joints of a robot)
   std::shared_ptr<ActiveTrajectory> none_;
 };
 

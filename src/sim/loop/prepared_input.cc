@@ -26,9 +26,10 @@ Status prepare(const std::shared_ptr<const CompiledWorld>& world, const SetContr
 Status prepare(const CompiledWorld& world, const FollowTrajectory& command, PreparedInput* out) {
   std::vector<Joint> joints = joints_of_command(world, command.robot, command.joints);
   GLOAM_TRY(JointPath path, JointPath::make(command.trajectory, joints.size()));
-  out->trajectory =
-      std::make_shared<ActiveTrajectory>(ActiveTrajectory{std::move(joints), std::move(path)});
-  for (Joint& joint : out->trajectory->joints) joint.world = world.serial;
+  for (Joint& joint : joints) joint.world = world.serial;
+  out->trajectory.replaced.resize(joints.size());
+  out->trajectory.trajectory = std::make_shared<ActiveTrajectory>(
+      ActiveTrajectory{std::move(joints), std::move(path), command.tag});
   return {};
 }
 

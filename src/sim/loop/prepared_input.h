@@ -5,13 +5,14 @@
 #include <memory>
 
 #include "gloam/command.h"
+#include "sim/joints/joint_inputs.h"
 #include "sim/loop/controller_slot.h"
 
 namespace gloam {
 
 struct PreparedInput {
-  ControllerSlot controller;                               ///< of SetController
-  std::shared_ptr<ActiveTrajectory> trajectory = nullptr;  ///< of FollowTrajectory
+  ControllerSlot controller;       ///< of SetController
+  NextTrajectory trajectory = {};  ///< of FollowTrajectory
 };
 
 /// Null for Commands that need none. Errors: of the controller's options, its rate, the trajectory.

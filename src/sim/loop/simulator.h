@@ -168,7 +168,7 @@ class Simulator {
   enum class Wake : uint8_t { kNo, kYes };  ///< kYes: the sim thread may have something to do now
   void call(const std::function<void()>& f, Wake wake = Wake::kYes);
   void look(const std::function<void()>& f) { call(f, Wake::kNo); }
-  void wake();
+  bool wake();  // false: it does not run
   static Error no_call_from_a_step();
   bool take_steps_here();
   bool is_idle();

@@ -101,6 +101,7 @@ void Simulator::answer_calls() {
   const std::lock_guard lock(mutex_);
   called_.store(false, std::memory_order_relaxed);
   for (const std::function<void()>* f : calls_) (*f)();
+  loop_.publish_due();
   calls_answered_ += static_cast<int64_t>(calls_.size());
   calls_.clear();
   idle_ = false;
@@ -120,7 +121,9 @@ bool Simulator::report_idle() {
 
 // ---- callers' threads ----
 
-// Runs f between two steps: here if the sim thread stands still, else on the sim thread.
+// Runs f between two steps: here if the sim thread stands still, else on the sim thread. Snapshots
+// that are due after it are published before it returns, so that a reader that has just subscribed
+// can wait for them with flush().
 void Simulator::call(const std::function<void()>& f, Wake wake) {
   if (is_on_sim_thread()) return f();  // in the middle of a step: f only looks, or sets a wish
   Turn turn(*this, std::try_to_lock);
@@ -140,15 +143,18 @@ void Simulator::call(const std::function<void()>& f, Wake wake) {
   MujocoWarningCapture warnings;  // as on the sim thread
   f();
   step_count_.store(loop_.stepper().step_count(), std::memory_order_relaxed);
-  if (wake == Wake::kYes) this->wake();
+  if (wake == Wake::kYes && this->wake()) loop_.publish_due();
 }
 
-void Simulator::wake() {
+bool Simulator::wake() {
+  bool is_running = false;
   {
     const std::lock_guard lock(mutex_);
+    is_running = running_;
     if (running_) idle_ = false;
   }
   signal_->raise();
+  return is_running;
 }
 
 bool Simulator::is_idle() {

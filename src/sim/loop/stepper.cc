@@ -415,8 +415,8 @@ const Snapshot& Stepper::snapshot() {
       out.hash = hash_;
       out.live = live_;
       for (const auto& effect : effects_) effect->publish(step_, &out.effects);
-      for (size_t robot = 0; robot < out.trajectories.size(); ++robot)
-        out.trajectories[robot] = inputs_->joints().trajectory(static_cast<int>(robot));
+      for (size_t joint = 0; joint < out.trajectories.size(); ++joint)
+        out.trajectories[joint] = inputs_->joints().trajectory(joint);
       out.effects.loads.assign(events_.loads.begin(), events_.loads.end());
       actuators_.publish(&out.actuators);
       out.sensor_stamp = sensor_stamp_;

@@ -3,6 +3,7 @@
 #include "base/check.h"
 #include "sim/state/state_layout.h"
 #include "world/world.h"
+#include "world/world_robots.h"
 
 namespace gloam {
 namespace {
@@ -43,6 +44,17 @@ SensorState Snapshot::operator[](SensorHandle sensor) const {
           data_->sensor_stamp};
 }
 
+std::vector<Pose> Snapshot::mocap_poses() const {
+  const mjModel& model = *data_->world->model;
+  const std::span<const double> p = state_part(model, state(), mjSTATE_MOCAP_POS);
+  const std::span<const double> q = state_part(model, state(), mjSTATE_MOCAP_QUAT);
+  std::vector<Pose> poses(static_cast<size_t>(model.nmocap));
+  for (size_t i = 0; i < poses.size(); ++i)
+    poses[i] = {{p[3 * i], p[3 * i + 1], p[3 * i + 2]},
+                {q[4 * i], q[4 * i + 1], q[4 * i + 2], q[4 * i + 3]}};
+  return poses;
+}
+
 double Snapshot::control(Actuator actuator) const {
   const mjModel& model = *data_->world->model;
   check_handle(*data_, actuator, model.nactuator);
@@ -51,10 +63,21 @@ double Snapshot::control(Actuator actuator) const {
                     mjSTATE_CTRL)[static_cast<size_t>(model.actuator_ctrladr[actuator.id])];
 }
 
+std::shared_ptr<const ActiveTrajectory> Snapshot::trajectory(Joint joint) const {
+  check_handle(*data_, joint, data_->world->model->njnt);
+  const auto i = static_cast<size_t>(joint.id);
+  return i < data_->trajectories.size() ? data_->trajectories[i] : nullptr;
+}
+
 std::shared_ptr<const ActiveTrajectory> Snapshot::trajectory(Robot robot) const {
   check_handle(*data_, robot, static_cast<int>(data_->world->robots.size()));
-  const auto i = static_cast<size_t>(robot.id);
-  return i < data_->trajectories.size() ? data_->trajectories[i] : nullptr;
+  const RobotInstance& instance = data_->world->robots[static_cast<size_t>(robot.id)];
+  std::shared_ptr<const ActiveTrajectory> newest;
+  for (const int joint : robot_joints(*data_->world->model, instance))
+    if (auto one = trajectory(Joint{joint, robot.world});
+        one != nullptr && (newest == nullptr || one->start_step > newest->start_step))
+      newest = std::move(one);
+  return newest;
 }
 
 const ActuatorOutputs* Snapshot::actuators(Robot robot) const {

@@ -38,7 +38,7 @@ struct SnapshotData {
   std::array<int, mjNWARNING> warnings{};  ///< MuJoCo's since the reset, by mjtWarning
   std::shared_ptr<const LiveFields> live;  ///< null = nothing changed
   EffectOutputs effects;
-  std::vector<std::shared_ptr<const ActiveTrajectory>> trajectories;  ///< by robot, null = none
+  std::vector<std::shared_ptr<const ActiveTrajectory>> trajectories;  ///< by joint, null = none
   std::vector<ActuatorOutputs> actuators;  ///< of robots with actuator models, as their layers
 };
 

@@ -1,5 +1,6 @@
 #include "sim/snapshots/snapshot_pool.h"
 
+#include <algorithm>
 #include <cstddef>
 
 #include "base/check.h"
@@ -63,7 +64,7 @@ SnapshotPool::Slot* SnapshotPool::add_slot() {
   data.state.resize(static_cast<size_t>(state_size(*world_->model)));
   data.sensordata.resize(static_cast<size_t>(world_->model->nsensordata));
   data.effects.fit(*world_);
-  data.trajectories.resize(world_->robots.size());
+  data.trajectories.resize(static_cast<size_t>(world_->model->njnt));
   slots_.fetch_add(1, std::memory_order_relaxed);
   return all_.back().get();
 }
@@ -92,6 +93,7 @@ Snapshot SnapshotPool::finish(Slot* slot) {
       &slot->data,
       [](SnapshotData* data) {
         data->live.reset();
+        std::ranges::fill(data->trajectories, nullptr);
         data->effects.clear();
       },
       SlotAllocator<SnapshotData>(shared_from_this(), slot)));

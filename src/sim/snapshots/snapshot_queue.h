@@ -6,7 +6,7 @@
 #include <functional>
 #include <memory>
 
-#include "sim/commands/bounded_queue.h"
+#include "sim/commands/lock_free_queue.h"
 #include "sim/loop/step_schedule.h"
 #include "sim/snapshots/snapshot_window.h"
 
@@ -106,7 +106,7 @@ class SnapshotQueue final : public SnapshotSource {
   bool full() const { return queue_.size() >= options_.capacity; }
 
   SubscriptionOptions options_;
-  BoundedQueue<SnapshotWindow> queue_;
+  LockFreeQueue<SnapshotWindow> queue_;
   Signal readers_;
   std::shared_ptr<Signal> sim_signal_;
   std::atomic<bool> closed_{false}, woken_{false};

@@ -77,6 +77,48 @@ TEST(StepLoop, AllocatesNothingOnceWarm) {
   reader.join();
 }
 
+// They start, replace each other and stop, and the memory of the old ones is released elsewhere.
+TEST(StepLoop, FollowsTrajectoriesOfAnyLengthWithoutAllocating) {
+#ifdef GLOAM_SANITIZED
+  GTEST_SKIP() << "the sanitizer owns malloc";
+#endif
+  auto world = world_from_mjcf(kRichModel);
+  auto sim = make_simulator(world);
+  ASSERT_TRUE(sim->add_controller(0, std::make_unique<RandomController>(), {500, 1}).ok());
+  ASSERT_TRUE(sim->set_step_hook([](const mjModel*, mjData* d) { counting = d->time > 0.1; }).ok());
+  auto queue = *sim->subscribe({.rate = {250, 1}, .required = true, .capacity = 4});
+  std::thread reader([queue] {
+    while (queue->next()) {
+    }
+  });
+  const auto joint = [&](const char* name) {
+    return Joint{mj_name2id(world->model.get(), mjOBJ_JOINT, name), 0};
+  };
+  FollowTrajectory both{{0, 0}, {joint("hip"), joint("knee")}, {}};
+  for (int i = 1; i <= 20'000; ++i) both.trajectory.points.push_back({0.01 * i, {0.1, -0.2}});
+  allocations = frees = 0;
+  std::thread client([&] {
+    for (int i = 0; i < 40; ++i) {
+      FollowTrajectory one{{0, 0}, {both.joints[i % 2]}, {.points = {{1, {-0.1 * (i % 3)}, {0}}}}};
+      EXPECT_TRUE(sim->post({.what = both}).ok());
+      EXPECT_TRUE(sim->post({.what = std::move(one)}).ok());
+      const Command stop{.what = StopTrajectory{{0, 0}}};
+      EXPECT_TRUE(i % 4 != 0 || sim->post(stop).ok());
+      static_cast<void>(sim->take_command_log());
+    }
+  });
+  sim->start(100'000);
+  client.join();
+  sim->run_until(sim->latest().step() + 100);
+  ASSERT_TRUE(sim->wait().ok());
+  EXPECT_EQ(sim->counters().commands_applied, 90);
+  EXPECT_EQ(allocations.load(), 0);
+  EXPECT_EQ(frees.load(), 0);
+  ASSERT_TRUE(sim->set_step_hook([](const mjModel*, mjData*) { counting = false; }).ok());
+  sim->stop();
+  reader.join();
+}
+
 // Nothing is allocated after `warm` [s] while a reader takes Snapshots of a queue of `capacity`.
 void expect_no_allocation(std::shared_ptr<const CompiledWorld> world, double warm, int64_t steps,
                           int capacity) {

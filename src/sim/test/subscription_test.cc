@@ -39,6 +39,21 @@ TEST(Subscription, OneMadeLaterBeginsAtThePresentStep) {
   EXPECT_EQ(queue->next().step(), 30);
 }
 
+TEST(Subscription, TheFirstSnapshotIsThereWhenTheCallReturns) {
+  auto sim = make_simulator(world_from_mjcf(kBall), lockstep());
+  sim->start();
+  for (int n = 0; n < 300; ++n) {
+    if (n % 3 == 0) {
+      ASSERT_TRUE(sim->step(1).ok());
+    }
+    auto queue = *sim->subscribe({.rate = {500, 1}, .required = true});
+    ASSERT_EQ(queue->handed_out(), 1) << "subscribed while the simulation stands still";
+    ASSERT_TRUE(sim->reset().ok());
+    ASSERT_EQ(queue->handed_out(), 2) << "reset";
+    queue->close();
+  }
+}
+
 TEST(Subscription, RequiredReadersLoseNothingHoweverSlow) {
   auto sim = make_simulator(world_from_mjcf(kBall));
   auto queue = *sim->subscribe({.rate = {500, 1}, .required = true, .capacity = 2});

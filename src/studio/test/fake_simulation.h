@@ -60,6 +60,9 @@ class FakeSimulation : public Simulation {
   Result<std::unique_ptr<TopicStream>> open_topics(const TopicRequest&, TopicCallback) override {
     return unsupported();
   }
+  Result<std::unique_ptr<TopicSubscription>> subscribe(TopicSink&) override {
+    return unsupported();
+  }
   Status publish(std::string_view, std::span<const uint8_t>) override { return unsupported(); }
   Result<std::vector<Command>> decode_input(std::string_view,
                                             std::span<const uint8_t>) const override {

@@ -10,13 +10,13 @@
 
 #include "gloam/log_player.h"
 #include "gloam/view.h"
-#include "raw_client.h"
+#include "web/test/raw_client.h"
 
 namespace gloam {
 namespace {
 
 namespace fs = std::filesystem;
-using studio::RawClient;
+using web::RawClient;
 
 const char* const kTumbling = R"(
 <mujoco><option timestep="0.002"/>

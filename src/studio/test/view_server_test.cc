@@ -13,19 +13,22 @@
 #include <vector>
 
 #include "fake_simulation.h"
-#include "raw_client.h"
 #include "studio/free_camera.h"
 #include "studio/messages.h"
 #include "studio/picture.h"
+#include "web/test/raw_client.h"
 
 namespace gloam {
 namespace {
 
 using namespace studio;
 using nlohmann::json;
+using web::RawClient;
 
 /// Small pictures, since the made-up renderer is slow, in a tier that needs no preview of them.
-ViewOptions small() { return {.port = 0, .render = {.tier = "path"}, .width = 64, .height = 48}; }
+ViewOptions small() {
+  return {.port = 0, .render = {.tier = RenderTier::kPath}, .width = 64, .height = 48};
+}
 
 /// Waits until something happens on another thread.
 bool eventually(const std::function<bool()>& holds, double seconds = 5) {
@@ -186,13 +189,13 @@ std::pair<std::vector<int>, std::vector<std::string>> first_widths(ViewOptions o
 
 TEST(ViewPreview, ASmallPictureComesBeforeTheFirst) {
   const auto [widths, calls] =
-      first_widths({.port = 0, .render = {.tier = "path"}, .width = 320, .height = 240});
+      first_widths({.port = 0, .render = {.tier = RenderTier::kPath}, .width = 320, .height = 240});
   EXPECT_EQ(widths, (std::vector<int>{80, 320}));
 }
 
 TEST(ViewPreview, APathTracedPictureComesBeforeTheFirstInteractiveOne) {
-  const auto [widths, calls] =
-      first_widths({.port = 0, .render = {.tier = "interactive"}, .width = 64, .height = 48});
+  const auto [widths, calls] = first_widths(
+      {.port = 0, .render = {.tier = RenderTier::kInteractive}, .width = 64, .height = 48});
   EXPECT_EQ(widths, (std::vector<int>{64, 64}));
   EXPECT_EQ(std::count(calls.begin(), calls.end(), "open free"), 2);
 }

@@ -141,6 +141,65 @@ TEST(JointPath, SplinesPassThroughPointsWithContinuousDerivatives) {
   EXPECT_EQ(quintic.point_at(5), 2u);
 }
 
+// Hermite's basis for values, first and second derivatives at both ends of [0, 1].
+double hermite(double u, double T, const JointSample& a, const JointSample& b) {
+  const double u2 = u * u, u3 = u2 * u, u4 = u3 * u, u5 = u4 * u;
+  return a.position * (1 - 10 * u3 + 15 * u4 - 6 * u5) +
+         a.velocity * T * (u - 6 * u3 + 8 * u4 - 3 * u5) +
+         a.acceleration * T * T * (u2 - 3 * u3 + 3 * u4 - u5) / 2 +
+         b.acceleration * T * T * (u3 - 2 * u4 + u5) / 2 +
+         b.velocity * T * (-4 * u3 + 7 * u4 - 3 * u5) + b.position * (10 * u3 - 15 * u4 + 6 * u5);
+}
+
+TEST(JointPath, TwoPointsWithAccelerationsAreHermitesQuintic) {
+  const JointSample a{0.3, -0.7, 2}, b{-1.1, 0.4, -3};
+  const double begin = 0.4, T = 1.7;
+  const JointPath path =
+      path_of({.points = {{begin, {a.position}, {a.velocity}, {a.acceleration}},
+                          {begin + T, {b.position}, {b.velocity}, {b.acceleration}}}},
+              {{0.1, 0.2, -0.3}});
+  for (int i = 0; i < 100; ++i) {
+    const double u = i / 100.0;
+    EXPECT_NEAR(path.at(begin + u * T, 0).position, hermite(u, T, a, b), 1e-12);
+    EXPECT_NEAR(path.at(u * begin, 0).position, hermite(u, begin, {0.1, 0.2, -0.3}, a), 1e-12);
+  }
+}
+
+TEST(JointPath, TwoPointsWithVelocitiesAreHermitesCubic) {
+  const JointSample a{0.3, -0.7}, b{-1.1, 0.4};
+  const double begin = 0.4, T = 1.7;
+  const JointPath path = path_of(
+      {.points = {{begin, {a.position}, {a.velocity}}, {begin + T, {b.position}, {b.velocity}}}},
+      {{0}});
+  for (int i = 0; i < 100; ++i) {
+    const double u = i / 100.0, v = 1 - u;
+    EXPECT_NEAR(path.at(begin + u * T, 0).position,
+                a.position * (1 + 2 * u) * v * v + a.velocity * T * u * v * v +
+                    b.position * u * u * (3 - 2 * u) - b.velocity * T * u * u * v,
+                1e-12);
+  }
+  EXPECT_NEAR(path.at(begin, 0).velocity, a.velocity, 1e-12);
+  EXPECT_NEAR(path.at(begin + T * (1 - 1e-13), 0).velocity, b.velocity, 1e-9);
+}
+
+// The rest of the path is shared, and a copy that starts elsewhere leaves the other as it is.
+TEST(JointPath, CopiesStartIndependently) {
+  for (const auto profile : {TrajectoryProfile::kSpline, TrajectoryProfile::kTrapezoidal}) {
+    JointTrajectory trajectory{profile, {{1, {1}}, {2, {0}}}};
+    if (profile != TrajectoryProfile::kSpline)
+      trajectory.max_velocity = trajectory.max_acceleration = {2};
+    const JointPath path = path_of(trajectory, {{0}});
+    std::vector<double> before, after;
+    for (const double t : steps_of(path, 50)) before.push_back(path.at(t, 0).position);
+    JointPath copy = path;
+    copy.begin(std::vector<JointSample>{{5, 1}});
+    EXPECT_EQ(copy.at(0, 0).position, 5);
+    EXPECT_NEAR(copy.at(copy.duration() - 1e-13, 0).position, 0, 1e-9);
+    for (const double t : steps_of(path, 50)) after.push_back(path.at(t, 0).position);
+    EXPECT_EQ(after, before);
+  }
+}
+
 // The same numbers as the polynomials of third degree have by hand.
 TEST(JointPath, DegreeFollowsWhatThePointsHave) {
   const JointPath cubic = path_of({.points = {{2, {1}, {0}}}}, {{0}});
@@ -179,14 +238,17 @@ TEST(JointPath, BadTrajectoriesAreErrors) {
   };
   EXPECT_THAT(spline({}), HasSubstr("no points"));
   EXPECT_THAT(spline({{1, {}}}), HasSubstr("no positions"));
-  EXPECT_THAT(spline({{1, {1}}}), HasSubstr("1 positions for 2 joints"));
+  EXPECT_THAT(spline({{1, {1, 1}}, {2, {1}}}), HasSubstr("point 1 has 1 positions for 2 joints"));
   EXPECT_THAT(spline({{1, {1, nan}}}), HasSubstr("not finite"));
   EXPECT_THAT(spline({{1, {1, 1e300}}}), HasSubstr("not finite"));
   EXPECT_THAT(spline({{1, {1, 2}, {1}}}), HasSubstr("1 velocities"));
-  EXPECT_THAT(spline({{1, {1, 2}, {}, {0, inf}}}), HasSubstr("accelerations of a point"));
+  EXPECT_THAT(spline({{1, {1, 2}, {}, {0, inf}}}),
+              HasSubstr("accelerations of point 0 are not finite"));
   EXPECT_THAT(spline({{-1, {1, 2}}}), HasSubstr("negative"));
   EXPECT_THAT(spline({{nan, {1, 2}}}), HasSubstr("negative"));
   EXPECT_THAT(spline({{1, {1, 2}}, {1, {1, 2}}}), HasSubstr("do not increase"));
+  EXPECT_THAT(spline({{1, {1, 2}}, {3, {1, 2}}, {2.5, {1, 2}}}),
+              HasSubstr("point 1 at 3 s, point 2 at 2.5 s"));
   EXPECT_THAT(spline({{1, {1, 2}}, {1 + 1e-15, {1, 2}}}), HasSubstr("do not increase"));
   EXPECT_THAT(spline(std::vector<TrajectoryPoint>(100'001, {0, {1, 2}})), HasSubstr("more than"));
   EXPECT_THAT(error({.points = {{1, {1, 2}}}, .max_velocity = {1}}), HasSubstr("has times"));

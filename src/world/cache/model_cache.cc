@@ -221,9 +221,12 @@ std::shared_ptr<CompiledWorld> load_cached_world(const Scene& scene, uint64_t pl
 void store_cached_world(std::shared_ptr<const CompiledWorld> world,
                         std::vector<Dependency> dependencies) {
   const fs::path path = entry_of(world->scene, world->place_hash);
-  keep_in_cache_later(path, kMagic, 0, [world = std::move(world), files = std::move(dependencies)] {
-    return serialise(*world, files);
-  });
+  const auto bytes_of = [](const ModelPtr& model) { return model ? uint64_t(model->nbuffer) : 0; };
+  const uint64_t held = bytes_of(world->model) + bytes_of(world->visual_model);
+  keep_in_cache_later(path, kMagic, held,
+                      [world = std::move(world), files = std::move(dependencies)] {
+                        return serialise(*world, files);
+                      });
 }
 
 }  // namespace gloam

@@ -7,7 +7,7 @@
 
 #include "scene/files/mujoco_compiles.h"
 #include "scene/files/mujoco_guard.h"
-#include "world/compile/endless_compile.h"
+#include "world/compile/progress/endless_compile.h"
 #include "world/world.h"
 
 namespace gloam {

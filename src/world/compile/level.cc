@@ -17,15 +17,15 @@
 #include "scene/files/urdf_text.h"
 #include "scene/overrides.h"
 #include "world/compile/agent_writer.h"
-#include "world/compile/compile_progress.h"
 #include "world/compile/compiler_options.h"
-#include "world/compile/endless_compile.h"
 #include "world/compile/finite_model.h"
 #include "world/compile/level_cameras.h"
 #include "world/compile/level_keyframe.h"
-#include "world/compile/long_wait.h"
 #include "world/compile/mesh_copy.h"
 #include "world/compile/mesh_object.h"
+#include "world/compile/progress/compile_progress.h"
+#include "world/compile/progress/endless_compile.h"
+#include "world/compile/progress/long_wait.h"
 #include "world/compile/sampled_ground.h"
 
 namespace gloam {

@@ -12,8 +12,8 @@
 #include "base/parallel.h"
 #include "geometry/mesh/model_file_cache.h"
 #include "scene/files/model_path.h"
-#include "world/compile/compile_progress.h"
-#include "world/compile/load_progress.h"
+#include "world/compile/progress/compile_progress.h"
+#include "world/compile/progress/load_progress.h"
 
 namespace gloam {
 namespace fs = std::filesystem;

@@ -14,10 +14,10 @@
 #include "places/writer/spec_edit.h"
 #include "places/writer/spec_geom.h"
 #include "scene/validate/validate.h"
-#include "world/compile/compile_progress.h"
-#include "world/compile/long_wait.h"
 #include "world/compile/mesh_object.h"
 #include "world/compile/model_loader.h"
+#include "world/compile/progress/compile_progress.h"
+#include "world/compile/progress/long_wait.h"
 #include "world/shapes/imported_mesh.h"
 
 namespace gloam {

@@ -7,8 +7,8 @@
 #include "base/log.h"
 #include "places/writer/height_field_spec.h"
 #include "places/writer/spec_geom.h"
-#include "world/compile/compile_progress.h"
 #include "world/compile/model_loader.h"
+#include "world/compile/progress/compile_progress.h"
 #include "world/shapes/visual_file.h"
 
 namespace gloam {

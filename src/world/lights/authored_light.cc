@@ -141,7 +141,7 @@ Result<int> LightAuthor::profile_row(const LightOptions& options) {
 }
 
 Result<int> LightAuthor::mesh_row(const LightOptions& options) {
-  const bool is_file = options.type == "mesh";
+  const bool is_file = options.type == LightType::kMesh;
   if (is_file) {
     if (const auto known = meshes_.find(options.file); known != meshes_.end()) return known->second;
   }
@@ -151,8 +151,8 @@ Result<int> LightAuthor::mesh_row(const LightOptions& options) {
     if (!read.ok()) return in_light(std::move(read).error(), options);
     mesh = std::move(read).value();
   } else {
-    mesh = options.type == "rect" ? rect_lamp((*options.size)[0], (*options.size)[1])
-                                  : disk_lamp(*options.radius);
+    mesh = options.type == LightType::kRect ? rect_lamp((*options.size)[0], (*options.size)[1])
+                                            : disk_lamp(*options.radius);
   }
   const int row = static_cast<int>(out_->meshes.size());
   out_->meshes.push_back(std::move(mesh));
@@ -170,16 +170,16 @@ Status LightAuthor::add_lamp(const LightOptions& options, const LampPlace& place
   light.schedule = place.schedule;
   light.motion = place.motion;
   const Vec3f color = light_color(options);
-  if (options.type == "directional") {
-    light.type = LightType::kDirectional;
+  if (options.type == LightType::kDirectional) {
+    light.type = PunctualLightType::kDirectional;
     light.radius = static_cast<float>(std::sin(options.angle.value_or(0) / 2 * kDegree));
     light.intensity = color * static_cast<float>(*options.illuminance);
     levels_->illuminance.push_back(luminance(light.intensity));
   } else {
     light.radius = static_cast<float>(options.radius.value_or(0));
-    if (options.type == "spot") {
+    if (options.type == LightType::kSpot) {
       constexpr double kDefaultConeAngle = 45;  // [deg]
-      light.type = LightType::kSpot;
+      light.type = PunctualLightType::kSpot;
       light.cos_cutoff =
           static_cast<float>(std::cos(options.angle.value_or(kDefaultConeAngle) * kDegree));
       light.softness = static_cast<float>(options.softness.value_or(0));
@@ -195,7 +195,7 @@ Status LightAuthor::add_lamp(const LightOptions& options, const LampPlace& place
 }
 
 Status LightAuthor::add_area(const LightOptions& options, const LampPlace& place) {
-  const bool is_sphere = options.type == "sphere";
+  const bool is_sphere = options.type == LightType::kSphere;
   InstanceDescription instance;
   double area = 0;
   if (is_sphere) {
@@ -220,7 +220,8 @@ Status LightAuthor::add_area(const LightOptions& options, const LampPlace& place
   material.emits_outwards = !is_sphere;
   material.schedule = place.schedule;
   levels_->illuminance.push_back(area_illuminance(
-      shown, area, options.type == "rect" || options.type == "disk", place.distance));
+      shown, area, options.type == LightType::kRect || options.type == LightType::kDisk,
+      place.distance));
 
   instance.body = place.body;
   instance.X_BG = pose_of(options);
@@ -258,9 +259,8 @@ Status LightAuthor::add(const LightOptions& options) {
   constexpr float kCarriedAimDistance = 2;  // [m]
   place.distance = light_distance(p_W, *out_);
   if (!is_static_[body]) place.distance = max(place.distance, kCarriedAimDistance);
-  const bool is_lamp =
-      options.type == "point" || options.type == "spot" || options.type == "directional";
-  GLOAM_TRY_STATUS(is_lamp ? add_lamp(options, place) : add_area(options, place));
+  GLOAM_TRY_STATUS(is_area_light(*options.type) ? add_area(options, place)
+                                                : add_lamp(options, place));
   ++count_;
   return {};
 }

@@ -11,10 +11,12 @@
 
 namespace gloam {
 
-enum class LightType : uint8_t { kPoint, kSpot, kDirectional };
+/// Types of LightType without a luminous surface; lamps with one are instances of meshes and
+/// spheres.
+enum class PunctualLightType : uint8_t { kPoint, kSpot, kDirectional };
 struct LightDescription {
   std::string name;
-  LightType type = LightType::kPoint;
+  PunctualLightType type = PunctualLightType::kPoint;
   bool active = true;
   bool casts_shadow = true;
   /// Point, spot: [cd] per channel; directional: illuminance on a facing surface [lx].

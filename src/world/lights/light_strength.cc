@@ -10,7 +10,7 @@ namespace {
 
 /// Share of a spot's intensity at an angle from its axis: smooth over the outer part of its cone.
 double spot_share(const LightDescription& light, double angle) {
-  if (light.type != LightType::kSpot) return 1;
+  if (light.type != PunctualLightType::kSpot) return 1;
   const double cutoff = std::acos(std::clamp<double>(light.cos_cutoff, -1, 1));
   const double inner = cutoff * (1 - light.softness);
   if (angle >= cutoff) return 0;
@@ -48,7 +48,7 @@ Vec3f light_color(const LightOptions& light) {
 
 double solid_angle(const LightDescription& light, const IesProfile* profile) {
   // The grid of the profile's own flux is exact; a cone cuts through it.
-  if (light.type == LightType::kPoint)
+  if (light.type == PunctualLightType::kPoint)
     return profile != nullptr ? profile->flux / profile->most : 4 * M_PI;
   const double cutoff = std::acos(std::clamp<double>(light.cos_cutoff, -1, 1));
   constexpr int kRings = 2048;
@@ -75,7 +75,7 @@ double area_luminance(const LightOptions& options, double area) {
   if (options.luminance) return *options.luminance;
   if (options.flux) return *options.flux / (M_PI * area);
   // Along the axis a flat lamp shows all of its area, a sphere a quarter of it.
-  return *options.intensity / (options.type == "sphere" ? area / 4 : area);
+  return *options.intensity / (options.type == LightType::kSphere ? area / 4 : area);
 }
 
 }  // namespace gloam

@@ -27,22 +27,22 @@ LightDescription model_light(const mjModel& m, int i, float distance) {
   const float cutoff = clamp(m.light_cutoff[i] * (kPi / 180), 0, kPi);
   switch (m.light_type[i]) {
     case mjLIGHT_DIRECTIONAL:
-      light.type = LightType::kDirectional;
+      light.type = PunctualLightType::kDirectional;
       light.radius = min(light.radius, 1);
       break;
     case mjLIGHT_POINT:
-      light.type = LightType::kPoint;
+      light.type = PunctualLightType::kPoint;
       break;
     default:
       // OpenGL's cutoff of 180 degrees is a light that shines everywhere.
-      light.type = cutoff >= kPi ? LightType::kPoint : LightType::kSpot;
+      light.type = cutoff >= kPi ? PunctualLightType::kPoint : PunctualLightType::kSpot;
       light.cos_cutoff = std::cos(cutoff);
       light.softness = clamp(m.light_softness[i], 0, 1);
   }
   light.ambient = vec3(m.light_ambient + 3 * i);
   light.legacy_scale = legacy_light_scale(light.type, distance, vec3(m.light_attenuation + 3 * i));
   const float candela = m.light_intensity[i];
-  if (candela <= 0 && light.type == LightType::kSpot)
+  if (candela <= 0 && light.type == PunctualLightType::kSpot)
     light.softness = max(light.softness, softness_of_exponent(m.light_exponent[i], cutoff));
   light.intensity = light_intensity(vec3(m.light_diffuse + 3 * i), candela, light.legacy_scale);
   return light;
@@ -79,7 +79,7 @@ void set_image_light(const mjModel& m, int i, MaterialTable* materials, RenderDe
 void LightLevels::add(const LightDescription& light, float distance) {
   const float lux = luminance(light.intensity);
   photometric = photometric || lux > 0;
-  illuminance.push_back(light.type == LightType::kDirectional ? lux : lux / sqr(distance));
+  illuminance.push_back(light.type == PunctualLightType::kDirectional ? lux : lux / sqr(distance));
 }
 
 float light_distance(Vec3f p_W, const RenderDescription& scene) {
@@ -115,7 +115,8 @@ LightLevels describe_light(const mjModel& model, const Scene& scene,
     ambient += light.ambient;
     levels.photometric = levels.photometric || model.light_intensity[i] > 0;
     const float lux = luminance(light.intensity);
-    levels.illuminance.push_back(light.type == LightType::kDirectional ? lux : lux / sqr(distance));
+    levels.illuminance.push_back(
+        light.type == PunctualLightType::kDirectional ? lux : lux / sqr(distance));
   }
   if (own_sky) return levels;
 
@@ -123,12 +124,12 @@ LightLevels describe_light(const mjModel& model, const Scene& scene,
   constexpr int kAuto = 2;
   LightDescription head;
   head.name = "headlight";
-  head.type = LightType::kDirectional;
+  head.type = PunctualLightType::kDirectional;
   head.casts_shadow = false;
   // MuJoCo's own renderer leaves an automatic headlight on, and models without intensities are
   // lit to suit it.
   head.active = headlight.active == kAuto ? !levels.photometric : headlight.active != 0;
-  head.legacy_scale = legacy_light_scale(LightType::kDirectional, 0, {1, 0, 0});
+  head.legacy_scale = legacy_light_scale(PunctualLightType::kDirectional, 0, {1, 0, 0});
   head.intensity = light_intensity(vec3(headlight.diffuse), 0, head.legacy_scale);
   if (headlight.active != 0) head.ambient = vec3(headlight.ambient);
   ambient += head.ambient;

@@ -60,9 +60,9 @@ Vec3f light_intensity(Vec3f diffuse, float intensity, float legacy_scale) {
   return y > 0 ? diffuse * (intensity / y) : Vec3f{0, 0, 0};
 }
 
-float legacy_light_scale(LightType type, float distance, Vec3f attenuation) {
+float legacy_light_scale(PunctualLightType type, float distance, Vec3f attenuation) {
   const float facing_white = kPi * kWhiteLuminance;  // E = pi L of a Lambert surface of albedo 1
-  if (type == LightType::kDirectional) return facing_white;
+  if (type == PunctualLightType::kDirectional) return facing_white;
   const float dimmed = attenuation.x + attenuation.y * distance + attenuation.z * sqr(distance);
   return facing_white * sqr(distance) / (dimmed > 0 ? dimmed : 1.0f);
 }

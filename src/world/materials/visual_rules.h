@@ -46,7 +46,7 @@ Vec3f light_intensity(Vec3f diffuse, float intensity, float legacy_scale);
 
 /// Scale of a legacy light that lights a facing white surface to diffuse x kWhiteLuminance at the
 /// distance `distance` [m] (directional: anywhere); `attenuation` = constant, linear, quadratic.
-float legacy_light_scale(LightType type, float distance, Vec3f attenuation);
+float legacy_light_scale(PunctualLightType type, float distance, Vec3f attenuation);
 
 /// Share of the cone over which a spot of OpenGL exponent `exponent` fades: its intensity is half
 /// at the angle where cos^exponent is. `cutoff` = half angle [rad].

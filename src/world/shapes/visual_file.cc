@@ -221,9 +221,9 @@ class VisualImporter {
     const Vec3f back = length_squared(X_BL.z) > 0 ? normalize(X_BL.z) : Vec3f{0, 0, 1};
     const Frame frame = Frame::from_z(back);
     light.X_BL = {frame.x, frame.y, frame.z, X_BL.p};
-    if (in.type == ImportedLightType::kDirectional) light.type = LightType::kDirectional;
+    if (in.type == ImportedLightType::kDirectional) light.type = PunctualLightType::kDirectional;
     if (in.type == ImportedLightType::kSpot) {
-      light.type = LightType::kSpot;
+      light.type = PunctualLightType::kSpot;
       light.cos_cutoff = std::cos(in.outer_cone);
       light.softness = 1 - in.inner_cone / in.outer_cone;
     }

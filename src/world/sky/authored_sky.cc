@@ -119,7 +119,7 @@ Status make_clear(const SkyOptions& options, LightLevels* levels, RenderDescript
 
   LightDescription light;
   light.name = "sun";
-  light.type = LightType::kDirectional;
+  light.type = PunctualLightType::kDirectional;
   light.intensity = sky.sun_illuminance;
   light.radius = static_cast<float>(std::sin(sky.sun_angular_radius));
   light.is_static = !moves;

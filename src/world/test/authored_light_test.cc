@@ -63,13 +63,13 @@ class AuthoredLight : public ::testing::Test {
 };
 
 TEST_F(AuthoredLight, PointLightsInEveryUnit) {
-  const RenderDescription d =
-      describe({{.name = "cd", .type = "point", .intensity = 5},
-                {.name = "lm", .type = "point", .flux = 4 * M_PI * 5},
-                {.name = "nit", .type = "point", .luminance = 5 / (M_PI * 0.01), .radius = 0.1}});
+  const RenderDescription d = describe(
+      {{.name = "cd", .type = LightType::kPoint, .intensity = 5},
+       {.name = "lm", .type = LightType::kPoint, .flux = 4 * M_PI * 5},
+       {.name = "nit", .type = LightType::kPoint, .luminance = 5 / (M_PI * 0.01), .radius = 0.1}});
   for (const char* name : {"cd", "lm", "nit"}) {
     const LightDescription& light = lamp(d, name);
-    EXPECT_EQ(light.type, LightType::kPoint);
+    EXPECT_EQ(light.type, PunctualLightType::kPoint);
     expect_near(light.intensity, {5, 5, 5}, 1e-4f);
     EXPECT_EQ(light.light, -1);
     EXPECT_EQ(light.body, 0);
@@ -82,9 +82,9 @@ TEST_F(AuthoredLight, PointLightsInEveryUnit) {
 TEST_F(AuthoredLight, SpotsSpreadTheirFluxOverTheirCone) {
   const double hard = 2 * M_PI * (1 - std::cos(M_PI / 6));
   const RenderDescription d =
-      describe({{.name = "hard", .type = "spot", .flux = 100, .angle = 30},
-                {.name = "soft", .type = "spot", .flux = 100, .angle = 30, .softness = 1},
-                {.name = "wide", .type = "spot", .flux = 100}});
+      describe({{.name = "hard", .type = LightType::kSpot, .flux = 100, .angle = 30},
+                {.name = "soft", .type = LightType::kSpot, .flux = 100, .angle = 30, .softness = 1},
+                {.name = "wide", .type = LightType::kSpot, .flux = 100}});
   EXPECT_NEAR(lamp(d, "hard").intensity.x, 100 / hard, 0.01);
   EXPECT_FLOAT_EQ(lamp(d, "hard").cos_cutoff, std::cos(kPi / 6));
   EXPECT_FLOAT_EQ(lamp(d, "wide").cos_cutoff, std::cos(kPi / 4));
@@ -96,7 +96,7 @@ TEST_F(AuthoredLight, SpotsSpreadTheirFluxOverTheirCone) {
 
 TEST_F(AuthoredLight, TheSunHasLuxAndAnAngle) {
   const RenderDescription d = describe({{.name = "sun",
-                                         .type = "directional",
+                                         .type = LightType::kDirectional,
                                          .illuminance = 1e5,
                                          .temperature = 5800,
                                          .angle = 0.53}});
@@ -105,11 +105,11 @@ TEST_F(AuthoredLight, TheSunHasLuxAndAnAngle) {
 }
 
 TEST_F(AuthoredLight, ColoursGiveTheHueAlone) {
-  const RenderDescription d =
-      describe({{.name = "red", .type = "point", .intensity = 10, .color = Vec3{0.5, 0, 0}},
-                {.name = "warm", .type = "point", .intensity = 10, .temperature = 2700},
-                {.name = "day", .type = "point", .intensity = 10, .temperature = 6500},
-                {.name = "blue", .type = "point", .intensity = 10, .temperature = 20000}});
+  const RenderDescription d = describe(
+      {{.name = "red", .type = LightType::kPoint, .intensity = 10, .color = Vec3{0.5, 0, 0}},
+       {.name = "warm", .type = LightType::kPoint, .intensity = 10, .temperature = 2700},
+       {.name = "day", .type = LightType::kPoint, .intensity = 10, .temperature = 6500},
+       {.name = "blue", .type = LightType::kPoint, .intensity = 10, .temperature = 20000}});
   for (const char* name : {"red", "warm", "day", "blue"})
     EXPECT_NEAR(luminance(lamp(d, name).intensity), 10, 1e-3) << name;
   EXPECT_EQ(lamp(d, "red").intensity.y, 0);
@@ -126,13 +126,13 @@ TEST_F(AuthoredLight, ColoursGiveTheHueAlone) {
 
 TEST_F(AuthoredLight, PosesFollowBodiesAndLookAt) {
   const RenderDescription d = describe({{.name = "head",
-                                         .type = "spot",
+                                         .type = LightType::kSpot,
                                          .body = "arm",
                                          .position = {0, 0, 1},
                                          .look_at = Vec3{2, 0, 1},
                                          .intensity = 1},
                                         {.name = "fixed",
-                                         .type = "spot",
+                                         .type = LightType::kSpot,
                                          .body = "wall",
                                          .position = {0, 0, 1},
                                          .orientation = Quat{0, 1, 0, 0},
@@ -151,14 +151,14 @@ TEST_F(AuthoredLight, AreasHaveTheFluxThatTheyWereGiven) {
   folder_.write("lamp.obj", tetrahedron_obj());
   const std::filesystem::path mesh = folder_.path() / "lamp.obj";
   const RenderDescription d =
-      describe({{.name = "rect", .type = "rect", .flux = 100, .size = {{0.5, 2}}},
-                {.name = "disk", .type = "disk", .flux = 100, .radius = 0.3},
-                {.name = "ball", .type = "sphere", .flux = 100, .radius = 0.3},
-                {.name = "axis", .type = "disk", .intensity = 10, .radius = 0.3},
-                {.name = "glow", .type = "sphere", .intensity = 10, .radius = 0.3},
-                {.name = "nit", .type = "rect", .luminance = 7, .size = {{1, 1}}},
-                {.name = "mesh", .type = "mesh", .flux = 100, .file = mesh},
-                {.name = "mesh2", .type = "mesh", .luminance = 3, .file = mesh}});
+      describe({{.name = "rect", .type = LightType::kRect, .flux = 100, .size = {{0.5, 2}}},
+                {.name = "disk", .type = LightType::kDisk, .flux = 100, .radius = 0.3},
+                {.name = "ball", .type = LightType::kSphere, .flux = 100, .radius = 0.3},
+                {.name = "axis", .type = LightType::kDisk, .intensity = 10, .radius = 0.3},
+                {.name = "glow", .type = LightType::kSphere, .intensity = 10, .radius = 0.3},
+                {.name = "nit", .type = LightType::kRect, .luminance = 7, .size = {{1, 1}}},
+                {.name = "mesh", .type = LightType::kMesh, .flux = 100, .file = mesh},
+                {.name = "mesh2", .type = LightType::kMesh, .luminance = 3, .file = mesh}});
   const auto area = [&](const char* name) {
     return area_of(d.meshes[static_cast<size_t>(shape(d, name).mesh)]);
   };
@@ -192,10 +192,10 @@ TEST(LampMesh, FlatLampsFaceAlongMinusZ) {
 }
 
 TEST_F(AuthoredLight, AreasAreLabelledAndLeftAloneByLiveColours) {
-  const RenderDescription d =
-      describe({{.name = "panel_1", .type = "rect", .flux = 1, .size = {{1, 1}}},
-                {.name = "panel_2", .type = "rect", .flux = 1, .size = {{1, 1}}},
-                {.name = "torch", .type = "sphere", .body = "arm", .flux = 1, .radius = 0.01}});
+  const RenderDescription d = describe(
+      {{.name = "panel_1", .type = LightType::kRect, .flux = 1, .size = {{1, 1}}},
+       {.name = "panel_2", .type = LightType::kRect, .flux = 1, .size = {{1, 1}}},
+       {.name = "torch", .type = LightType::kSphere, .body = "arm", .flux = 1, .radius = 0.01}});
   const InstanceDescription &one = shape(d, "panel_1"), &two = shape(d, "panel_2");
   EXPECT_EQ(one.geom, -1);
   EXPECT_EQ(look(d, "panel_1").model_material, -1);
@@ -214,10 +214,10 @@ TEST_F(AuthoredLight, ProfilesKeepTheirShapeAndTakeTheGivenStrength) {
   folder_.write("beam.ies", kBeam);
   const std::filesystem::path ies = folder_.path() / "beam.ies";
   const RenderDescription d =
-      describe({{.name = "own", .type = "point", .ies = ies},
-                {.name = "cd", .type = "point", .intensity = 50, .ies = ies},
-                {.name = "lm", .type = "point", .flux = 1000, .ies = ies},
-                {.name = "cone", .type = "spot", .flux = 1000, .angle = 8, .ies = ies}});
+      describe({{.name = "own", .type = LightType::kPoint, .ies = ies},
+                {.name = "cd", .type = LightType::kPoint, .intensity = 50, .ies = ies},
+                {.name = "lm", .type = LightType::kPoint, .flux = 1000, .ies = ies},
+                {.name = "cone", .type = LightType::kSpot, .flux = 1000, .angle = 8, .ies = ies}});
   ASSERT_EQ(d.ies_profiles.size(), 1u) << "a file is read once";
   const IesProfile& profile = d.ies_profiles[0];
   EXPECT_FLOAT_EQ(profile.most, 500);
@@ -230,18 +230,18 @@ TEST_F(AuthoredLight, ProfilesKeepTheirShapeAndTakeTheGivenStrength) {
 }
 
 TEST_F(AuthoredLight, SchedulesBecomeRows) {
-  LightOptions blink{.name = "blink", .type = "point", .flux = 1};
+  LightOptions blink{.name = "blink", .type = LightType::kPoint, .flux = 1};
   blink.schedule = LightScheduleOptions{.on_off = OnOffOptions{.period = 2, .duty = 0.25},
                                         .keys = {{0, 1}, {5, 0}},
                                         .hold = true,
                                         .mains = MainsOptions{60, 0.2},
                                         .starter = StarterOptions{1, 5},
                                         .flame = FlameOptions{3, 0.1}};
-  LightOptions panel{.name = "panel", .type = "rect", .flux = 1, .size = {{1, 1}}};
+  LightOptions panel{.name = "panel", .type = LightType::kRect, .flux = 1, .size = {{1, 1}}};
   panel.schedule = LightScheduleOptions{.on_off = OnOffOptions{}};
   world_.scene.sim.seed = 42;
   const RenderDescription d =
-      describe({blink, {.name = "still", .type = "point", .flux = 1}, panel});
+      describe({blink, {.name = "still", .type = LightType::kPoint, .flux = 1}, panel});
   EXPECT_EQ(d.schedule_seed, 42u);
   ASSERT_EQ(d.schedules.size(), 2u);
   EXPECT_EQ(lamp(d, "blink").schedule, 0);
@@ -260,57 +260,70 @@ TEST_F(AuthoredLight, SchedulesBecomeRows) {
 }
 
 TEST_F(AuthoredLight, NamesWhatIsNotThereOrDamaged) {
-  EXPECT_THAT(error_of({.name = "a", .type = "point", .body = "arn", .flux = 1}),
+  EXPECT_THAT(error_of({.name = "a", .type = LightType::kPoint, .body = "arn", .flux = 1}),
               testing::AllOf(HasSubstr("scene.toml:7"), HasSubstr("there is no body 'arn'"),
                              HasSubstr("did you mean 'arm'?")));
   folder_.write("bad.ies", "IESNA:LM-63-1995\nTILT=NONE\n1 1000 x\n");
   EXPECT_THAT(
-      error_of({.name = "a", .type = "point", .ies = folder_.path() / "bad.ies"}),
+      error_of({.name = "a", .type = LightType::kPoint, .ies = folder_.path() / "bad.ies"}),
       testing::AllOf(HasSubstr("scene.toml:7"), HasSubstr("light 'a'"), HasSubstr("bad.ies:3")));
   std::string dark = kBeam;
   dark.replace(dark.find("500 500 100 100 100"), 19, "0 0 0 0 0");
   folder_.write("dark.ies", dark);
-  EXPECT_THAT(error_of({.name = "a", .type = "point", .ies = folder_.path() / "dark.ies"}),
-              HasSubstr("emits no light"));
+  EXPECT_THAT(
+      error_of({.name = "a", .type = LightType::kPoint, .ies = folder_.path() / "dark.ies"}),
+      HasSubstr("emits no light"));
   folder_.write("bad.obj", "f 1 2 3\n");
   EXPECT_THAT(
-      error_of({.name = "a", .type = "mesh", .flux = 1, .file = folder_.path() / "bad.obj"}),
+      error_of(
+          {.name = "a", .type = LightType::kMesh, .flux = 1, .file = folder_.path() / "bad.obj"}),
       testing::AllOf(HasSubstr("scene.toml:7"), HasSubstr("light 'a'")));
   folder_.write("empty.obj", "v 0 0 0\n");
   EXPECT_NE(
-      error_of({.name = "a", .type = "mesh", .flux = 1, .file = folder_.path() / "empty.obj"}), "");
-  EXPECT_THAT(error_of({.name = "a", .type = "point", .ies = folder_.path() / "none.ies"}),
-              HasSubstr("no such file"));
+      error_of(
+          {.name = "a", .type = LightType::kMesh, .flux = 1, .file = folder_.path() / "empty.obj"}),
+      "");
+  EXPECT_THAT(
+      error_of({.name = "a", .type = LightType::kPoint, .ies = folder_.path() / "none.ies"}),
+      HasSubstr("no such file"));
 }
 
 TEST_F(AuthoredLight, TheHeadlightYieldsAndTheExposureFollows) {
   const auto ev = [](double white) { return std::log2(white / (1.2 * 0.85)); };
-  const RenderDescription d =
-      describe({{.name = "a", .type = "point", .position = {0, 0, 2}, .intensity = 4000}});
+  const RenderDescription d = describe(
+      {{.name = "a", .type = LightType::kPoint, .position = {0, 0, 2}, .intensity = 4000}});
   for (const LightDescription& light : d.lights) {
     EXPECT_TRUE(light.name != "headlight" || !light.active);
   }
   // 4000 cd over 2 m; the headlight's ambient light of 0.1 stays: 10 cd/m².
   EXPECT_NEAR(d.ev100, ev(1000 / M_PI + 10), 1e-3);
-  const RenderDescription panel = describe(
-      {{.name = "a", .type = "rect", .position = {0, 0, 2}, .luminance = 4000, .size = {{1, 1}}}});
+  const RenderDescription panel = describe({{.name = "a",
+                                             .type = LightType::kRect,
+                                             .position = {0, 0, 2},
+                                             .luminance = 4000,
+                                             .size = {{1, 1}}}});
   EXPECT_NEAR(panel.ev100, ev(1000 / M_PI + 10), 1e-3);
-  const RenderDescription wall = describe(
-      {{.name = "a", .type = "rect", .position = {0, 0, 2}, .luminance = 50, .size = {{99, 99}}}});
+  const RenderDescription wall = describe({{.name = "a",
+                                            .type = LightType::kRect,
+                                            .position = {0, 0, 2},
+                                            .luminance = 50,
+                                            .size = {{99, 99}}}});
   EXPECT_NEAR(wall.ev100, ev(50 + 10), 1e-3) << "no brighter than right in front of it";
   world_ = visual_test::compile(R"(<mujoco><statistic extent='0.4'/><worldbody><body name='arm'>
       <joint/><geom size='.1'/></body></worldbody></mujoco>)");
   const RenderDescription torch =
-      describe({{.name = "a", .type = "point", .body = "arm", .intensity = 1000}});
+      describe({{.name = "a", .type = LightType::kPoint, .body = "arm", .intensity = 1000}});
   EXPECT_NEAR(torch.ev100, ev(250 / M_PI + 10), 1e-3) << "what is carried shines ahead";
 }
 
 TEST_F(AuthoredLight, HundredThousandLampsTakeNoQuadraticTime) {
   std::vector<LightOptions> lights;
   for (int i = 0; i < 100000; ++i) {
-    lights.push_back({.name = "l" + std::to_string(i), .type = "point", .body = "arm", .flux = 1});
+    lights.push_back(
+        {.name = "l" + std::to_string(i), .type = LightType::kPoint, .body = "arm", .flux = 1});
     if (i % 10 == 0)
-      lights.back() = {.name = lights.back().name, .type = "sphere", .flux = 1, .radius = 1};
+      lights.back() = {
+          .name = lights.back().name, .type = LightType::kSphere, .flux = 1, .radius = 1};
   }
   const auto start = std::chrono::steady_clock::now();
   const RenderDescription d = describe(std::move(lights));

@@ -135,7 +135,7 @@ TEST_F(AuthoredSky, TheSunStandsWhereItIsPut) {
     ASSERT_NE(light, nullptr);
     const float c = std::cos(kPi / 6);
     expect_near(light->X_BL.z, north == 0 ? Vec3f{-c, 0, 0.5f} : Vec3f{0, c, 0.5f}, 1e-5f);
-    EXPECT_EQ(light->type, LightType::kDirectional);
+    EXPECT_EQ(light->type, PunctualLightType::kDirectional);
     EXPECT_EQ(light->body, 0);
     EXPECT_TRUE(light->is_static && light->casts_shadow);
     EXPECT_NEAR(light->radius, std::sin(kSunAngularRadius), 1e-7);

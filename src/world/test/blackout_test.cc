@@ -22,13 +22,13 @@ class Blackout : public ::testing::Test {
  protected:
   Blackout() : world_(visual_test::compile(kLitRoom)) {
     world_.scene.lights = {
-        {.name = "headlamp", .type = "spot", .flux = 100},
+        {.name = "headlamp", .type = LightType::kSpot, .flux = 100},
         {.name = "panel",
-         .type = "sphere",
+         .type = LightType::kSphere,
          .flux = 100,
          .radius = 0.1,
          .schedule = LightScheduleOptions{.on_off = OnOffOptions{.period = 2, .duty = 0.5}}},
-        {.name = "exit_sign", .type = "point", .flux = 10}};
+        {.name = "exit_sign", .type = LightType::kPoint, .flux = 10}};
   }
   RenderDescription describe(BlackoutOptions blackout) {
     world_.scene.blackout = std::move(blackout);

@@ -23,7 +23,7 @@ RenderDescription with_lamp(LightOptions light) {
 }
 LightOptions beacon(LightMotionOptions motion) {
   return {.name = "beacon",
-          .type = "spot",
+          .type = LightType::kSpot,
           .body = "car",
           .position = {0, 0, 0.5},
           .look_at = Vec3{1, 0, 0.5},
@@ -57,7 +57,7 @@ TEST(LampMotion, AHangingLampSwingsAsAPendulum) {
   EXPECT_NEAR(pendulum_rate(0.994), 0.5, 1e-3) << "the seconds pendulum";
   const double quarter = 0.25 / pendulum_rate(2);
   const RenderDescription d = with_lamp({.name = "lamp",
-                                         .type = "sphere",
+                                         .type = LightType::kSphere,
                                          .position = {1, 0, 2},
                                          .flux = 100,
                                          .radius = 0.1,

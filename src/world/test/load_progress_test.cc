@@ -1,4 +1,4 @@
-#include "world/compile/load_progress.h"
+#include "world/compile/progress/load_progress.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "world/compile/long_wait.h"
+#include "world/compile/progress/long_wait.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -86,7 +86,7 @@ TEST_F(ModelCache, NoticesEveryChange) {
 TEST_F(ModelCache, TablesOfLightAreThoseOfTheSceneAtHand) {
   store();
   const auto describe = [&](double lux) {
-    scene_.lights = {{.name = "sun", .type = "directional", .illuminance = lux}};
+    scene_.lights = {{.name = "sun", .type = LightType::kDirectional, .illuminance = lux}};
     const auto loaded = load_cached_world(scene_);
     return loaded != nullptr ? describe_for_rendering(*loaded)->lights.back().intensity.x : -1;
   };

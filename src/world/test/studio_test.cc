@@ -14,7 +14,7 @@ namespace {
 using visual_test::compile;
 using visual_test::describe;
 
-RenderDescription look(const std::string& xml, const std::string& look = "auto") {
+RenderDescription look(const std::string& xml, RenderLook look = RenderLook::kAuto) {
   CompiledWorld world = compile(xml);
   world.scene.bare_model = "model.xml";
   world.scene.render.look = look;
@@ -78,10 +78,11 @@ TEST(Studio, LeavesModelsWithLightOrSkyAlone) {
     const RenderDescription d = look(xml);
     EXPECT_EQ(d.sky.environment.width, 0);
     EXPECT_EQ(studio_floors(d), 0);
-    EXPECT_LT(d.ev100, look(xml, "model").ev100) << "the exposure is opened for a dark robot";
-    EXPECT_GT(look(xml, "studio").sky.environment.width, 0) << "look = studio insists";
+    EXPECT_LT(d.ev100, look(xml, RenderLook::kModel).ev100)
+        << "the exposure is opened for a dark robot";
+    EXPECT_GT(look(xml, RenderLook::kStudio).sky.environment.width, 0) << "look = studio insists";
   }
-  const RenderDescription as_it_is = look(kStudioRobot, "model");
+  const RenderDescription as_it_is = look(kStudioRobot, RenderLook::kModel);
   EXPECT_EQ(as_it_is.sky.environment.width, 0);
   EXPECT_TRUE(as_it_is.lights.back().active) << "the headlight";
   EXPECT_FLOAT_EQ(as_it_is.ev100, ev100_for(kWhiteLuminance, kWhiteExposed));
@@ -168,7 +169,7 @@ TEST(FreeView, WhatIsTallAndThinIsSeenFromHigherUp) {
 }
 
 TEST(FreeView, TheModelsLookHasMuJoCosView) {
-  const RenderDescription d = look(kStudioRobot, "model");
+  const RenderDescription d = look(kStudioRobot, RenderLook::kModel);
   EXPECT_NEAR(d.cameras.back().X_WC.z.z, std::sin(45 * M_PI / 180), 1e-5);
 }
 

@@ -366,7 +366,7 @@ TEST_F(VisualFile, LampsShineWhereTheirNodesAre) {
   ASSERT_EQ(d.lights.size(), 3u);  // and the headlight
   const LightDescription &spot = d.lights[0], &sun = d.lights[1];
   EXPECT_EQ(spot.name, "lamp/bulb");
-  EXPECT_EQ(spot.type, LightType::kSpot);
+  EXPECT_EQ(spot.type, PunctualLightType::kSpot);
   expect_near(spot.intensity, {50, 25, 12.5f}, 1e-5f);
   EXPECT_NEAR(spot.cos_cutoff, std::cos(0.6f), 1e-6f);
   EXPECT_NEAR(spot.softness, 0.5f, 1e-6f);
@@ -374,7 +374,7 @@ TEST_F(VisualFile, LampsShineWhereTheirNodesAre) {
   EXPECT_GT(spot.body, 0);
   expect_near(spot.X_BL.p, {1, -3, 2}, 1e-6f);
   expect_near(-spot.X_BL.z, {0, 1, 0}, 1e-6f);  // glTF's -z
-  EXPECT_EQ(sun.type, LightType::kDirectional);
+  EXPECT_EQ(sun.type, PunctualLightType::kDirectional);
   EXPECT_EQ(sun.intensity.x, 1000);
   EXPECT_NEAR(length(sun.X_BL.z), 1, 1e-6f);
   EXPECT_FALSE(d.lights[2].active) << "the automatic headlight yields to lamps of known strength";

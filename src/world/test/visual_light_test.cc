@@ -24,10 +24,10 @@ TEST(VisualLight, LegacyLightsLightFacingWhiteToTheirDiffuse) {
   ASSERT_EQ(out.lights.size(), 5u) << "four and the headlight";
   // E = pi L for a Lambert surface of albedo 1 and L = 100 d; a point source has I = E r².
   const float E = 100 * kPi;
-  EXPECT_EQ(out.lights[0].type, LightType::kDirectional);
+  EXPECT_EQ(out.lights[0].type, PunctualLightType::kDirectional);
   EXPECT_FALSE(out.lights[0].casts_shadow);
   expect_near(out.lights[0].intensity, Vec3f{.5f, .6f, .7f} * E, 1e-3f);
-  EXPECT_EQ(out.lights[1].type, LightType::kPoint);
+  EXPECT_EQ(out.lights[1].type, PunctualLightType::kPoint);
   EXPECT_FLOAT_EQ(out.lights[1].radius, .1f);
   expect_near(out.lights[1].intensity, Vec3f{1, 1, .5f} * (E * 9), 1e-2f);  // centre 3 m away
   expect_near(out.lights[2].intensity, Vec3f{1, 1, 1} * (E * 4 / 3), 1e-2f);
@@ -75,11 +75,11 @@ TEST(VisualLight, LiveFieldsFollowTheSameRule) {
 TEST(VisualLight, LegacySpotFadesWhereItsExponentDoes) {
   const RenderDescription out = describe(scene(R"(
       <light pos="0 0 3" cutoff="45" exponent="3"/><light pos="0 0 3" cutoff="180"/>)"));
-  EXPECT_EQ(out.lights[0].type, LightType::kSpot);
+  EXPECT_EQ(out.lights[0].type, PunctualLightType::kSpot);
   // The fade is centred where cos^3 = 1/2.
   const float half = std::acos(std::cbrt(.5f));
   EXPECT_NEAR(kPi / 4 * (1 - out.lights[0].softness / 2), half, 1e-4);
-  EXPECT_EQ(out.lights[1].type, LightType::kPoint);
+  EXPECT_EQ(out.lights[1].type, PunctualLightType::kPoint);
 }
 
 TEST(VisualLight, HeadlightIsTheLastLight) {

@@ -15,7 +15,8 @@ namespace gloam::visual_test {
 inline CompiledWorld compile(const std::string& xml) {
   char error[1000] = "";
   CompiledWorld world;
-  world.scene.render.look = "model";  // the rules of MuJoCo's own light are what is tested
+  world.scene.render.look =
+      RenderLook::kModel;  // the rules of MuJoCo's own light are what is tested
   const SpecPtr spec{mj_parseXMLString(xml.c_str(), nullptr, error, sizeof(error))};
   if (spec != nullptr) world.model.reset(mj_compile(spec.get(), nullptr));
   EXPECT_NE(world.model, nullptr) << error << (spec ? mjs_getError(spec.get()) : "");

@@ -139,7 +139,7 @@ void add_key_light(const Affine3f& X_WC, RenderDescription* out) {
   const float azimuth = camera - kKeyLeftOfCamera;
   LightDescription key;
   key.name = "studio key";
-  key.type = LightType::kDirectional;
+  key.type = PunctualLightType::kDirectional;
   key.intensity = Vec3f{1, 0.98f, 0.95f} * kKeyIlluminance;
   key.radius = kKeyRadius;
   key.is_static = true;
@@ -168,7 +168,7 @@ bool has_floor(std::span<const DrawnPart> all, float diagonal, const RenderDescr
 }  // namespace
 
 bool needs_studio(const Scene& scene, const RenderDescription& description) {
-  if (scene.render.look != "auto") return scene.render.look == "studio";
+  if (scene.render.look != RenderLook::kAuto) return scene.render.look == RenderLook::kStudio;
   if (!scene.lights.empty() || scene.sky || !scene.environment.file.empty()) return false;
   if (description.sky.texture >= 0 || description.sky.environment.width > 0) return false;
   const bool lit = std::any_of(

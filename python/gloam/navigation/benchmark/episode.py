@@ -72,11 +72,11 @@ class Touched:
     def sample(self, sim: gloam.Simulation) -> None:
         """Reads the contacts of this instant. Feet and trunk on level ground do not count."""
         for contact in sim.contacts():
-            names = contact["geoms"]
+            names = contact.geoms
             own = [name.startswith(f"{ROBOT}/") for name in names]
-            is_ground = abs(float(np.asarray(contact["normal"])[2])) > math.sqrt(0.5)
-            x, y, z = (float(v) for v in contact["position"])
-            if own[0] == own[1] or is_ground or float(np.linalg.norm(contact["force"])) <= 0:
+            is_ground = abs(float(np.asarray(contact.normal)[2])) > math.sqrt(0.5)
+            x, y, z = (float(v) for v in contact.position)
+            if own[0] == own[1] or is_ground or float(np.linalg.norm(contact.force)) <= 0:
                 continue
             if z < height_at(self._ground, x, y) + _LOW:
                 continue

@@ -25,7 +25,7 @@ class VisibilityMeter:
 
     def sample(self) -> None:
         """Takes the values since the last call."""
-        self._extinctions += [KOSCHMIEDER / float(sample.values[0]) for sample in self._probe.waiting()]
+        self._extinctions += [KOSCHMIEDER / float(sample.values[0]) for sample in self._probe]
 
     def mean(self) -> float | None:
         """The visibility of the mean extinction, as in docs/metrics.md; None without a sample."""

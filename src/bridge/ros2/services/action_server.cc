@@ -5,7 +5,7 @@
 
 #include "bridge/ros2/services/simulation_values.h"
 #include "bridge/ros2/services/typed_service.h"
-#include "ros/messages/simulation_services.h"
+#include "ros/messages/simulation_interfaces.h"
 
 namespace gloam::bridge {
 namespace {
@@ -93,7 +93,6 @@ Result<std::vector<uint8_t>> ActionServer::send_goal(std::span<const uint8_t> by
     for (const auto& [id, goal] : goals_) {
       if (is_end(goal->status)) continue;
       goal->replaced = goal->cancelled = true;
-      goal->status = GoalStatus::STATUS_CANCELING;
     }
     const auto goal = std::make_shared<Goal>();
     goal->stamp = response.stamp;

@@ -48,7 +48,7 @@ struct GoalRequest {
 /// Rule for a goal that comes while another runs.
 enum class GoalPolicy : uint8_t {
   kRefuse,
-  kReplace,  ///< the old one is cancelled
+  kReplace,  ///< the old one is asked to end
 };
 
 struct ActionOptions {

@@ -6,8 +6,8 @@
 #include "bridge/ros2/services/simulation_services.h"
 #include "bridge/ros2/services/simulation_values.h"
 #include "bridge/ros2/services/typed_service.h"
+#include "ros/messages/simulation_interfaces.h"
 #include "ros/messages/simulation_interfaces_1.h"
-#include "ros/messages/simulation_services.h"
 
 namespace gloam::bridge {
 namespace {
@@ -25,7 +25,7 @@ si::Result filter_result(const Error& error) {
 }
 
 srv::GetEntities_Response get_entities(const Operator& op, const si::EntityFilters& filters) {
-  srv::GetEntities_Response response;
+  srv::GetEntities_Response response{.result = result_ok()};
   const Result<std::vector<Entity>> entities = filter_entities(op, filters);
   if (!entities.ok()) {
     response.result = filter_result(entities.error());
@@ -36,7 +36,7 @@ srv::GetEntities_Response get_entities(const Operator& op, const si::EntityFilte
 }
 
 srv::GetEntitiesStates_Response get_states(Operator& op, const si::EntityFilters& filters) {
-  srv::GetEntitiesStates_Response response;
+  srv::GetEntitiesStates_Response response{.result = result_ok()};
   const Result<std::vector<Entity>> entities = filter_entities(op, filters);
   if (!entities.ok()) {
     response.result = filter_result(entities.error());
@@ -56,7 +56,7 @@ srv::GetEntitiesStates_Response get_states(Operator& op, const si::EntityFilters
 }
 
 srv::GetEntityState_Response get_state(Operator& op, const std::string& name) {
-  srv::GetEntityState_Response response;
+  srv::GetEntityState_Response response{.result = result_ok()};
   const Result<EntityState> state = op.entity_state(name);
   if (!state.ok()) {
     response.result = result_of(state.error());
@@ -121,7 +121,7 @@ srv::SetEntityState_Request with_flags(const Operator& op,
 }
 
 srv::GetEntityInfo_Response get_info(const Operator& op, const std::string& name) {
-  srv::GetEntityInfo_Response response;
+  srv::GetEntityInfo_Response response{.result = result_ok()};
   const Result<Entity> entity = op.find_entity(name);
   if (!entity.ok()) {
     response.result = result_of(entity.error());
@@ -144,7 +144,7 @@ si::Result set_info(Operator& op, const srv::SetEntityInfo_Request& request) {
 }
 
 srv::GetEntityBounds_Response get_bounds(const Operator& op, const std::string& name) {
-  srv::GetEntityBounds_Response response;
+  srv::GetEntityBounds_Response response{.result = result_ok()};
   const Result<Box> box = op.entity_bounds(name, BoxFrame::kEntity);
   if (!box.ok()) {
     response.result = result_of(box.error());
@@ -155,7 +155,7 @@ srv::GetEntityBounds_Response get_bounds(const Operator& op, const std::string& 
 }
 
 srv::GetNamedPoses_Response get_named_poses(const Operator& op, const si::TagsFilter& tags) {
-  srv::GetNamedPoses_Response response;
+  srv::GetNamedPoses_Response response{.result = result_ok()};
   for (const NamedPose& pose : op.named_poses())
     if (has_tags(pose.tags, tags))
       response.poses.push_back({pose.name, pose.description, pose.tags, ros_pose_of(pose.X_WP)});
@@ -163,7 +163,7 @@ srv::GetNamedPoses_Response get_named_poses(const Operator& op, const si::TagsFi
 }
 
 srv::GetNamedPoseBounds_Response get_pose_bounds(const Operator& op, const std::string& name) {
-  srv::GetNamedPoseBounds_Response response;
+  srv::GetNamedPoseBounds_Response response{.result = result_ok()};
   const std::vector<NamedPose> poses = op.named_poses();
   const auto pose = std::ranges::find(poses, name, &NamedPose::name);
   if (pose == poses.end()) {

@@ -85,7 +85,7 @@ Outcome NodeParameters::check_own(const ri::Parameter& parameter) const {
   if (own.type == ParameterType::PARAMETER_STRING) {
     const std::string& name = parameter.value.string_value;
     const bool good =
-        parameter.value.type == own.type && pace_named(name).ok() && name != "lockstep";
+        parameter.value.type == own.type && enum_named<Pace>(name).ok() && name != "lockstep";
     return good ? Outcome{true, ""} : refused("'pace' must be one of: fast, realtime, sensors");
   }
   double number = 0;

@@ -37,9 +37,9 @@ class NodeParameters {
   }
   rcl_interfaces::srv::GetParameterTypes_Response types(
       const rcl_interfaces::srv::GetParameterTypes_Request& request) const {
-    rcl_interfaces::srv::GetParameterTypes_Response response;
-    for (const std::string& name : request.names) response.types.push_back(value(name).type);
-    return response;
+    std::vector<uint8_t> types;
+    for (const std::string& name : request.names) types.push_back(value(name).type);
+    return {std::move(types)};
   }
   rcl_interfaces::srv::ListParameters_Response list(
       const rcl_interfaces::srv::ListParameters_Request& request) const;

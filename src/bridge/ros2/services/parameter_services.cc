@@ -13,7 +13,7 @@ namespace rsrv = rcl_interfaces::srv;
 std::vector<Ros2Service> parameter_services(Operator& operations, const std::string& node,
                                             Ros2Publish publish) {
   const auto all = std::make_shared<NodeParameters>(operations, node, std::move(publish));
-  const auto worker = std::make_shared<Worker>(kMostSlowServices);
+  const auto worker = std::make_shared<Worker>(kMostSlowServices, Overflow::kReject);
   const std::string base = node + "/";
   std::vector<Ros2Service> list;
   list.push_back(make_service<rsrv::GetParameters_Request, rsrv::GetParameters_Response>(

@@ -7,7 +7,7 @@
 #include "bridge/ros2/services/simulation_values.h"
 #include "bridge/ros2/services/typed_service.h"
 #include "ros/codec.h"
-#include "ros/messages/simulation_services.h"
+#include "ros/messages/simulation_interfaces.h"
 #include "ros/type_description.h"
 
 namespace gloam::bridge {
@@ -56,7 +56,7 @@ Ros2Action simulate_steps_action(Operator& operations, const std::string& ns, Ro
   options.get_result_hash = service_hash_of<steps_action::SimulateSteps_GetResult_Request,
                                             steps_action::SimulateSteps_GetResult_Response>();
   options.clock = [op] { return op->simulation().latest().time(); };
-  options.unknown = steps_end(StepStatus::STATUS_UNKNOWN, {}).response;
+  options.unknown = steps_end(StepStatus::STATUS_UNKNOWN, result_ok()).response;
   options.accept = [op](std::span<const uint8_t> bytes) -> Result<GoalRequest> {
     GLOAM_TRY(const auto request, decode<steps_action::SimulateSteps_SendGoal_Request>(bytes));
     GoalRequest goal{.id = request.goal_id.uuid};

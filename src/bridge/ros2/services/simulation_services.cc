@@ -8,7 +8,7 @@
 #include "bridge/ros2/services/simulation_values.h"
 #include "bridge/ros2/services/typed_service.h"
 #include "gloam/program.h"
-#include "ros/messages/simulation_services.h"
+#include "ros/messages/simulation_interfaces.h"
 
 namespace gloam::bridge {
 namespace {
@@ -118,7 +118,7 @@ void add_run_services(ServiceTable* table) {
       ns + "/get_simulator_features", [](const auto&) { return features(); }));
   add(make_service<srv::GetSimulationState_Request, srv::GetSimulationState_Response>(
       ns + "/get_simulation_state", [op](const auto&) {
-        srv::GetSimulationState_Response response;
+        srv::GetSimulationState_Response response{.result = result_ok()};
         response.state.state = state_message(op->state());
         if (op->end_asked()) response.state.state = State::STATE_QUITTING;
         return response;
@@ -142,7 +142,8 @@ void add_run_services(ServiceTable* table) {
 
 std::vector<Ros2Service> simulation_services(Operator& operations, int interfaces,
                                              const std::string& ns) {
-  ServiceTable table{operations, interfaces, ns, std::make_shared<Worker>(kMostSlowServices)};
+  ServiceTable table{operations, interfaces, ns,
+                     std::make_shared<Worker>(kMostSlowServices, Overflow::kReject)};
   add_run_services(&table);
   add_entity_services(&table);
   add_spawn_services(&table);

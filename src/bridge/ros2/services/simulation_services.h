@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
+#include "base/threads/worker.h"
 #include "bridge/operations/operator.h"
 #include "bridge/ros2/ros2_service.h"
-#include "bridge/worker.h"
 
 namespace gloam::bridge {
 

@@ -78,7 +78,7 @@ Status keep_matching(const std::string& filter, std::vector<Entity>* entities) {
 
 }  // namespace
 
-si::Result result_ok() { return {}; }
+si::Result result_ok() { return result_of(ResultCode::RESULT_OK, ""); }
 
 si::Result result_of(int code, std::string message) {
   si::Result result;
@@ -88,7 +88,7 @@ si::Result result_of(int code, std::string message) {
 }
 
 si::Result result_of(const Status& status, int wrong_state) {
-  if (status.ok()) return {};
+  if (status.ok()) return result_ok();
   const Error& error = status.error();
   const std::string text = error.to_string();
   switch (error.kind) {

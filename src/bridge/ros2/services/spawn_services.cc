@@ -5,8 +5,8 @@
 #include "bridge/ros2/services/simulation_services.h"
 #include "bridge/ros2/services/simulation_values.h"
 #include "bridge/ros2/services/typed_service.h"
+#include "ros/messages/simulation_interfaces.h"
 #include "ros/messages/simulation_interfaces_1.h"
-#include "ros/messages/simulation_services.h"
 
 namespace gloam::bridge {
 namespace {
@@ -39,7 +39,7 @@ SpawnRequest spawn_request(const srv1::SpawnEntity_Request& from) {
 
 si::SpawnResult spawn_one(Operator& op, const SpawnRequest& request) {
   const SpawnResult spawned = op.spawn(request);
-  si::SpawnResult result;
+  si::SpawnResult result{.result = result_ok()};
   result.entity_name = spawned.name;
   if (!spawned.ok())
     result.result = result_of(spawn_code(spawned.failure), spawned.error.to_string());
@@ -56,7 +56,7 @@ srv::SpawnEntity_Response spawn(Operator& op, const Request& request) {
 }
 
 srv::SpawnEntities_Response spawn_all(Operator& op, const srv::SpawnEntities_Request& request) {
-  srv::SpawnEntities_Response response;
+  srv::SpawnEntities_Response response{.result = result_ok()};
   if (request.spawn_requests.size() > kMostAtOnce) {
     response.result = result_of(SpawnCode::RESULT_OPERATION_FAILED,
                                 "at most 256 entities can be spawned at once");
@@ -100,7 +100,7 @@ si::Bounds bounds_of(const Vec3& size) {
 
 srv::GetSpawnables_Response get_spawnables(const Operator& op,
                                            const std::vector<std::string>& sources) {
-  srv::GetSpawnables_Response response;
+  srv::GetSpawnables_Response response{.result = result_ok()};
   for (const Spawnable& one : list_spawnables(op, sources, &response.result))
     response.spawnables.push_back({{one.uri, ""}, one.description, bounds_of(one.size)});
   return response;
@@ -108,7 +108,7 @@ srv::GetSpawnables_Response get_spawnables(const Operator& op,
 
 srv1::GetSpawnables_Response get_spawnables_1(const Operator& op,
                                               const std::vector<std::string>& sources) {
-  srv1::GetSpawnables_Response response;
+  srv1::GetSpawnables_Response response{.result = result_ok()};
   for (const Spawnable& one : list_spawnables(op, sources, &response.result))
     response.spawnables.push_back({one.uri, one.description, bounds_of(one.size)});
   return response;

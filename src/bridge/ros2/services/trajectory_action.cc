@@ -17,7 +17,7 @@ constexpr std::string_view kInputName = "joint_trajectory";
 
 bool is_trajectory_input(const TopicInfo& topic) {
   return topic.is_input && topic.type == "trajectory_msgs/msg/JointTrajectory" &&
-         topic.name.ends_with(kInputName) && topic.source.starts_with("robot ");
+         topic.name.ends_with(kInputName) && topic.source.kind == TopicSource::Kind::kRobot;
 }
 
 // Controllers that bring joints to goals: Gloam's own, and those of programs, which may.
@@ -38,8 +38,7 @@ std::vector<std::string> trajectory_robots(Simulation& simulation) {
   const World world = simulation.world();
   for (const TopicInfo& topic : *topics) {
     if (!is_trajectory_input(topic)) continue;
-    const std::string robot = topic.source.substr(std::string_view("robot ").size());
-    if (obeys_joint_goals(world, robot)) robots.push_back(robot);
+    if (obeys_joint_goals(world, topic.source.name)) robots.push_back(topic.source.name);
   }
   return robots;
 }
@@ -50,7 +49,7 @@ Ros2Action trajectory_action(Simulation& simulation, const std::string& robot, i
   options.name = "/" + robot + "/follow_joint_trajectory";
   if (const auto topics = simulation.topics(); topics.ok())
     for (const TopicInfo& topic : *topics)
-      if (is_trajectory_input(topic) && topic.source == "robot " + robot)
+      if (is_trajectory_input(topic) && topic.source.name == robot)
         options.name =
             topic.name.substr(0, topic.name.size() - kInputName.size()) + "follow_joint_trajectory";
   options.type = "control_msgs/action/FollowJointTrajectory";
@@ -80,7 +79,7 @@ Ros2Action trajectory_action(Simulation& simulation, const std::string& robot, i
       return goal;
     }
     const auto run = std::make_shared<TrajectoryRun>(simulation, robot, interfaces, request.goal,
-                                                     std::move(*trajectory));
+                                                     std::move(*trajectory), goal.id);
     goal.run = [run](GoalContext& context) { return run->run(context); };
     return goal;
   };

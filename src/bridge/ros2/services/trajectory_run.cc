@@ -1,13 +1,13 @@
 #include "bridge/ros2/services/trajectory_run.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
+#include <cstring>
 #include <utility>
 
-#include "bridge/ros2/services/simulation_values.h"
-#include "bridge/ros2/services/snapshot_inbox.h"
+#include "base/threads/bounded_queue.h"
 #include "ros/codec.h"
-#include "ros/messages/control_msgs_5.h"
 #include "ros/trajectory_check.h"
 
 namespace gloam::bridge {
@@ -17,8 +17,21 @@ namespace fjt = control_msgs::action;
 using JointResult = fjt::FollowJointTrajectory_Result;
 using GoalState = action_msgs::GoalStatus;
 
-constexpr double kLongestSettling = 10;  // where the goal names no time for it [s]
-constexpr double kFeedbackRate = 50;     // looks at the joints, and feedback [Hz]
+constexpr double kLongestSettling = 10;                // where the goal names no time for it [s]
+constexpr std::chrono::milliseconds kLongestWait{50};  // for a Snapshot
+constexpr int64_t kFeedbackRate = 50;                  // looks at the joints, and feedback [Hz]
+
+/// Before a stream closes, its last callback must return.
+struct SnapshotQueueCloser {
+  BoundedQueue<Snapshot>& queue;
+  ~SnapshotQueueCloser() { queue.close(); }
+};
+
+int64_t tag_of(const GoalId& id) {
+  int64_t tag = 0;
+  std::memcpy(&tag, id.data(), sizeof tag);
+  return tag != 0 ? tag : -1;  // 0: trajectories of other origin
+}
 
 GoalEnd aborted(int32_t code, std::string text) {
   return trajectory_end(GoalState::STATUS_ABORTED, code, std::move(text));
@@ -68,16 +81,16 @@ std::vector<TrajectoryRun::Tolerance> TrajectoryRun::tolerances_of(
 
 TrajectoryRun::TrajectoryRun(Simulation& simulation, std::string robot, int interfaces,
                              const fjt::FollowJointTrajectory_Goal& goal,
-                             JointTrajectory trajectory)
+                             JointTrajectory trajectory, const GoalId& id)
     : simulation_(simulation),
       robot_(std::move(robot)),
       interfaces_(interfaces),
       names_(goal.trajectory.joint_names),
       trajectory_(std::move(trajectory)),
-      message_{goal.trajectory.header, {}, {}},
+      message_{goal.trajectory},
       path_(tolerances_of(goal.path_tolerance, names_)),
       goal_(tolerances_of(goal.goal_tolerance, names_)),
-      stamp_(goal.trajectory.header.stamp.sec + 1e-9 * goal.trajectory.header.stamp.nanosec) {
+      tag_(tag_of(id)) {
   const auto& settling = goal.goal_time_tolerance;
   settling_ = settling.sec + 1e-9 * settling.nanosec;
   if (settling_ <= 0) settling_ = kLongestSettling;
@@ -86,36 +99,54 @@ TrajectoryRun::TrajectoryRun(Simulation& simulation, std::string robot, int inte
 GoalEnd TrajectoryRun::run(GoalContext& context) {
   GoalEnd end = watch(context);
   // A newer goal continues from this one's motion; after any other end but success, joints hold.
-  if (end.status != GoalState::STATUS_SUCCEEDED && !context.is_replaced() && lease_ != nullptr)
-    if (const auto robot = simulation_.world().find_robot(robot_); robot.ok())
-      static_cast<void>(lease_->post(Command{.what = StopTrajectory{*robot}}));
+  if (end.status != GoalState::STATUS_SUCCEEDED && !context.is_replaced() && is_posted_) stop();
   return end;
 }
 
+void TrajectoryRun::stop() {
+  const Snapshot now = simulation_.latest();
+  const Result<Robot> robot = now.world().find_robot(robot_);
+  if (!robot.ok() || !find(now).ok()) return;
+  std::vector<Joint> joints = joints_;
+  if (now.step() > latest_start_)  // else it may still wait
+    std::erase_if(joints, [&](Joint joint) { return !is_own(now.trajectory(joint)); });
+  if (joints.empty()) return;
+  static_cast<void>(simulation_.post({.what = StopTrajectory{*robot, std::move(joints)}}));
+}
+
+std::optional<GoalEnd> TrajectoryRun::asked_end(const GoalContext& context) {
+  if (context.is_replaced())
+    return aborted(JointResult::INVALID_GOAL, "a newer goal has replaced it");
+  if (!context.is_cancelled()) return {};
+  return trajectory_end(GoalState::STATUS_CANCELED, JointResult::SUCCESSFUL, "cancelled");
+}
+
 GoalEnd TrajectoryRun::watch(GoalContext& context) {
+  if (const std::optional<GoalEnd> end = asked_end(context)) return *end;
   Snapshot now = simulation_.latest();
-  if (stamp_ > 0 && stamp_ + trajectory_.points.back().time < now.time())
-    return aborted(JointResult::OLD_HEADER_TIMESTAMP,
-                   "the trajectory ended before it was received");
-  const Rational steps = simulation_.step_rate();
-  rate_ = steps.value() > kFeedbackRate ? Rational{static_cast<int64_t>(kFeedbackRate), 1} : steps;
-  SnapshotInbox inbox;
-  const auto stream =
-      simulation_.open_snapshots({.rate = rate_, .required = true, .capacity = 1},
-                                 [&inbox](const Snapshot& snapshot) { inbox.put(snapshot); });
+  Rational rate = simulation_.step_rate();
+  if (rate.value() > kFeedbackRate) rate = {kFeedbackRate, 1};
+  BoundedQueue<Snapshot> inbox({.items = 1}, Overflow::kWait);
+  // A simulation that runs as fast as it can waits for each look, so that goals are not late.
+  const auto stream = simulation_.open_snapshots({.rate = rate, .required = true, .capacity = 1},
+                                                 [&inbox](const Snapshot& snapshot) {
+                                                   inbox.push(snapshot);
+                                                   inbox.wait_until_empty();
+                                                 });
   if (!stream.ok()) return aborted(JointResult::INVALID_GOAL, stream.error().to_string());
-  const InboxCloser closer{inbox};
-  if (const Status begun = begin(now); !begun.ok())
-    return aborted(JointResult::INVALID_GOAL, begun.error().to_string());
-  for (double before = now.time();;) {
-    if (context.is_cancelled())
-      return trajectory_end(GoalState::STATUS_CANCELED, JointResult::SUCCESSFUL, "cancelled");
-    const Snapshot next = inbox.take();
+  const SnapshotQueueCloser closer{inbox};
+  if (const std::optional<GoalEnd> end = begin(now)) return *end;
+  for (;;) {
+    if (const std::optional<GoalEnd> end = asked_end(context)) return *end;
+    const auto next_look = std::chrono::steady_clock::now() + kLongestWait;
+    const Snapshot next = inbox.pop_until(next_look).value_or(Snapshot());
     if (!simulation_.status().ok())
       return aborted(JointResult::INVALID_GOAL, "the simulation has failed");
     if (!next) continue;
-    if (next.time() < before) return aborted(JointResult::INVALID_GOAL, "the simulation was reset");
-    before = next.time();
+    if (next.time() < now.time()) {
+      is_posted_ = false;
+      return aborted(JointResult::INVALID_GOAL, "the simulation was reset");
+    }
     if (next.world().compiled() != now.world().compiled()) {
       if (const Status found = find(next); !found.ok())
         return aborted(JointResult::INVALID_JOINTS, found.error().to_string());
@@ -125,14 +156,24 @@ GoalEnd TrajectoryRun::watch(GoalContext& context) {
   }
 }
 
-Status TrajectoryRun::begin(const Snapshot& now) {
-  GLOAM_TRY_STATUS(find(now));
-  GLOAM_TRY(const Robot robot, now.world().find_robot(robot_));
-  GLOAM_TRY(lease_, simulation_.claim(robot));
-  const double timestep = 1 / simulation_.step_rate().value();
-  posted_step_ = now.step();
-  return lease_->post(Command{start_step(message_, now.time(), timestep),
-                              FollowTrajectory{robot, joints_, trajectory_}});
+std::optional<GoalEnd> TrajectoryRun::begin(const Snapshot& now) {
+  const Result<int64_t> start =
+      start_step(message_, now.time(), 1 / simulation_.step_rate().value());
+  if (!start.ok()) {
+    const bool is_old = message_.header.stamp.sec <= now.time();
+    return aborted(is_old ? JointResult::OLD_HEADER_TIMESTAMP : JointResult::INVALID_GOAL,
+                   start.error().to_string());
+  }
+  const auto post = [&]() -> Status {
+    GLOAM_TRY_STATUS(find(now));
+    GLOAM_TRY(const Robot robot, now.world().find_robot(robot_));
+    return simulation_.post({*start, FollowTrajectory{robot, joints_, trajectory_, tag_}});
+  };
+  const Status posted = post();
+  is_posted_ = posted.ok();
+  if (!posted.ok()) return aborted(JointResult::INVALID_GOAL, posted.error().to_string());
+  latest_start_ = std::max(*start, simulation_.latest().step());
+  return {};
 }
 
 Status TrajectoryRun::find(const Snapshot& now) {
@@ -141,14 +182,12 @@ Status TrajectoryRun::find(const Snapshot& now) {
 }
 
 std::optional<GoalEnd> TrajectoryRun::look(const Snapshot& now, GoalContext& context) {
-  const Result<Robot> robot = now.world().find_robot(robot_);
-  const auto active = robot.ok() ? now.trajectory(*robot) : nullptr;
-  const bool is_known = active != nullptr && active->joints.size() == joints_.size();
-  if (start_step_ < 0 && is_known && active->start_step >= posted_step_)
-    start_step_ = active->start_step;
-  if (start_step_ < 0) return {};
-  if (!is_known || active->start_step != start_step_)
+  const bool is_followed =
+      std::ranges::all_of(joints_, [&](Joint joint) { return is_own(now.trajectory(joint)); });
+  if (!is_followed && now.step() > latest_start_)
     return aborted(JointResult::INVALID_GOAL, "another command has ended the trajectory");
+  if (!is_followed) return {};
+  const auto active = now.trajectory(joints_[0]);
   tell(now, *active, context);
   return end_of(now, *active);
 }
@@ -180,47 +219,6 @@ std::string TrajectoryRun::joint_beyond(const Snapshot& now, const ActiveTraject
       return names_[i];
   }
   return {};
-}
-
-void TrajectoryRun::tell(const Snapshot& now, const ActiveTrajectory& path, GoalContext& context) {
-  fjt::FollowJointTrajectory_Feedback feedback;
-  feedback.header.stamp = ros_time_of(now.time());
-  feedback.joint_names = names_;
-  const auto time = ros_time_of(now.time() - path.start_time);
-  feedback.desired.time_from_start = {time.sec, time.nanosec};
-  feedback.actual.time_from_start = feedback.error.time_from_start =
-      feedback.desired.time_from_start;
-  for (size_t i = 0; i < joints_.size(); ++i) {
-    const JointState state = now[joints_[i]];
-    const JointSample desired = path.at(now.time(), i);
-    feedback.desired.positions.push_back(desired.position);
-    feedback.desired.velocities.push_back(desired.velocity);
-    feedback.desired.accelerations.push_back(desired.acceleration);
-    feedback.actual.positions.push_back(state.position());
-    feedback.actual.velocities.push_back(state.velocity());
-    feedback.error.positions.push_back(desired.position - state.position());
-    feedback.error.velocities.push_back(desired.velocity - state.velocity());
-  }
-  feedback.index = static_cast<int32_t>(path.path.point_at(now.time() - path.start_time));
-  std::vector<uint8_t> bytes;
-  if (interfaces_ == 1) {
-    namespace fjt5 = control_msgs_5::action;
-    fjt5::FollowJointTrajectory_FeedbackMessage old;
-    old.goal_id.uuid = context.id();
-    old.feedback = {feedback.header,
-                    feedback.joint_names,
-                    feedback.desired,
-                    feedback.actual,
-                    feedback.error,
-                    {},
-                    {},
-                    {},
-                    {}};
-    encode(old, &bytes);
-  } else {
-    encode(fjt::FollowJointTrajectory_FeedbackMessage{{context.id()}, std::move(feedback)}, &bytes);
-  }
-  context.feedback(bytes);
 }
 
 }  // namespace gloam::bridge

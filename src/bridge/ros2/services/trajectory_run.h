@@ -1,6 +1,7 @@
 #pragma once
-// TrajectoryRun: one goal of FollowJointTrajectory: the simulation follows its trajectory, and the
-// joints are watched in Snapshots.
+// TrajectoryRun: one goal of FollowJointTrajectory. It posts the trajectory, as the topic
+// joint_trajectory does, and watches the joints in Snapshots. It does not claim the robot: any
+// other command for one of the joints ends the goal.
 
 #include <memory>
 #include <optional>
@@ -26,7 +27,7 @@ class TrajectoryRun {
  public:
   TrajectoryRun(Simulation& simulation, std::string robot, int interfaces,
                 const control_msgs::action::FollowJointTrajectory_Goal& goal,
-                JointTrajectory trajectory);
+                JointTrajectory trajectory, const GoalId& id);
   GoalEnd run(GoalContext& context);
 
  private:
@@ -37,11 +38,18 @@ class TrajectoryRun {
   static std::vector<Tolerance> tolerances_of(const std::vector<control_msgs::JointTolerance>& list,
                                               const std::vector<std::string>& joints);
 
-  Status begin(const Snapshot& now);
+  std::optional<GoalEnd> begin(const Snapshot& now);
   Status find(const Snapshot& now);
   GoalEnd watch(GoalContext& context);
+  // Its end if its client or a newer goal asks for it.
+  static std::optional<GoalEnd> asked_end(const GoalContext& context);
   // The end of the goal, if this is it. Before its first step: none.
   std::optional<GoalEnd> look(const Snapshot& now, GoalContext& context);
+  // Its joints that still follow its trajectory hold their positions.
+  void stop();
+  bool is_own(const std::shared_ptr<const ActiveTrajectory>& active) const {
+    return active != nullptr && active->tag == tag_;
+  }
   std::optional<GoalEnd> end_of(const Snapshot& now, const ActiveTrajectory& path) const;
   std::string joint_beyond(const Snapshot& now, const ActiveTrajectory& path,
                            const std::vector<Tolerance>& allowed) const;
@@ -54,13 +62,11 @@ class TrajectoryRun {
   const JointTrajectory trajectory_;
   const trajectory_msgs::JointTrajectory message_;
   const std::vector<Tolerance> path_, goal_;
-  const double stamp_;
-  double settling_ = 0;      // [s]
-  int64_t posted_step_ = 0;  // at or after which it starts
-  int64_t start_step_ = -1;
-  Rational rate_ = {0, 1};
+  const int64_t tag_;         // of the trajectory in Snapshots
+  double settling_ = 0;       // [s]
+  int64_t latest_start_ = 0;  // step before which it starts at the latest
+  bool is_posted_ = false;
   std::vector<Joint> joints_;
-  std::unique_ptr<ControlLease> lease_;
 };
 
 }  // namespace gloam::bridge

@@ -6,8 +6,8 @@
 #include <string>
 #include <utility>
 
+#include "base/threads/worker.h"
 #include "bridge/ros2/ros2_service.h"
-#include "bridge/worker.h"
 #include "ros/codec.h"
 #include "ros/message_types.h"
 

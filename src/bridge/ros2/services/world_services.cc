@@ -5,8 +5,8 @@
 #include "bridge/ros2/services/simulation_services.h"
 #include "bridge/ros2/services/simulation_values.h"
 #include "bridge/ros2/services/typed_service.h"
+#include "ros/messages/simulation_interfaces.h"
 #include "ros/messages/simulation_interfaces_1.h"
-#include "ros/messages/simulation_services.h"
 
 namespace gloam::bridge {
 namespace {
@@ -51,7 +51,7 @@ bool is_foreign(const std::string& uri, const std::string& text) {
 }
 
 srv::LoadWorld_Response load(Operator& op, const std::string& uri, const std::string& text) {
-  srv::LoadWorld_Response response;
+  srv::LoadWorld_Response response{.result = result_ok()};
   if (uri.empty() && text.empty()) {
     response.result = result_of(srv::LoadWorld_Response::NO_RESOURCE,
                                 "the request contains neither an address nor a text");
@@ -72,7 +72,7 @@ srv::LoadWorld_Response load(Operator& op, const std::string& uri, const std::st
 }
 
 srv::GetCurrentWorld_Response current(const Operator& op) {
-  srv::GetCurrentWorld_Response response;
+  srv::GetCurrentWorld_Response response{.result = result_ok()};
   const Result<WorldFile> world = op.current_world();
   if (world.ok()) {
     response.world = world_message(*world);
@@ -85,7 +85,7 @@ srv::GetCurrentWorld_Response current(const Operator& op) {
 
 srv::GetAvailableWorlds_Response available(const Operator& op,
                                            const srv::GetAvailableWorlds_Request& request) {
-  srv::GetAvailableWorlds_Response response;
+  srv::GetAvailableWorlds_Response response{.result = result_ok()};
   if (!request.filter.tags.empty()) return response;  // no world has tags
   Result<std::vector<WorldFile>> worlds = op.worlds(request.additional_sources);
   if (!worlds.ok()) {

@@ -47,7 +47,7 @@ void pack_topics(Packer& out, const std::vector<TopicInfo>& topics) {
     pack_pair(out, "rate", topic.rate.value());
     pack_pair(out, "latched", topic.qos.is_latched);
     pack_pair(out, "input", topic.is_input);
-    pack_pair(out, "source", topic.source);
+    pack_pair(out, "source", to_string(topic.source));
   }
 }
 

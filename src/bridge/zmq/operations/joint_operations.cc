@@ -128,7 +128,8 @@ std::vector<Operation> joint_operations() {
         step},
        set_controller},
       {"follow_trajectory",
-       "makes a robot's joints follow a trajectory, which replaces the previous one",
+       "makes a robot's joints follow a trajectory, which replaces the trajectories of the same "
+       "joints",
        kAtOnce,
        {robot,
         joints,

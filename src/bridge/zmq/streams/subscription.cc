@@ -12,11 +12,11 @@ constexpr int64_t kStateRate = 100;  // [Hz], of "state"
 
 }  // namespace
 
-std::optional<TopicSubscription> parse_topic(std::string_view subscription) {
+std::optional<TopicInForm> parse_topic(std::string_view subscription) {
   for (const StreamForm form : {StreamForm::kShared, StreamForm::kDecoded, StreamForm::kCdr}) {
     const std::string_view prefix = prefix_of(form);
     if (subscription.starts_with(prefix) && subscription.substr(prefix.size()).starts_with('/'))
-      return TopicSubscription{std::string(subscription.substr(prefix.size())), form};
+      return TopicInForm{std::string(subscription.substr(prefix.size())), form};
   }
   return std::nullopt;
 }

@@ -5,19 +5,19 @@
 #include <string>
 #include <string_view>
 
-#include "bridge/zmq/streams/topic_sink.h"
+#include "bridge/zmq/streams/topic_encoder.h"
 #include "gloam/result.h"
 #include "gloam/types.h"
 
 namespace gloam::bridge::zeromq {
 
 /// A topic in one of its forms.
-struct TopicSubscription {
+struct TopicInForm {
   std::string topic;
   StreamForm form;
 };
 /// None: the text names no topic.
-std::optional<TopicSubscription> parse_topic(std::string_view subscription);
+std::optional<TopicInForm> parse_topic(std::string_view subscription);
 /// The text of a topic's form.
 std::string name_of(const std::string& topic, StreamForm form);
 

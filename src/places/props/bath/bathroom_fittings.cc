@@ -81,7 +81,7 @@ Prop mirror_cabinet(Workshop& shop) {
   b.collide_box({0, -y + 0.05f, z}, {x + 0.03f, y - 0.05f, z + 0.018f});
   LightOptions lamp;
   lamp.name = "lamp";
-  lamp.type = "rect";
+  lamp.type = LightType::kRect;
   lamp.position = {x + 0.006, 0, z - 0.003};
   lamp.size = {{0.03, 2.0 * y - 0.14}};
   lamp.flux = 700;

@@ -99,7 +99,7 @@ Prop ceiling_lamp(Workshop& shop) {
       shop.glow({0.95, 0.94, 0.91}, std::round(flux / (M_PI * M_PI * double(r * r) * 1.15))),
       lathe(rounded({{0, -h}, {0.72f * r, -0.86f * h}, {0.95f * r, -0.34f * h}}, 0.3f * r, 6), 48));
   LightOptions light;
-  light.type = "disk";
+  light.type = LightType::kDisk;
   light.position = {0, 0, double(-h) - 0.0005};
   light.radius = 0.7 * double(r);
   light.flux = 0.55 * flux;

@@ -194,7 +194,7 @@ Prop desk_lamp(Workshop& shop) {
          tube(smooth_path({{-0.105f, 0, 0.008f}, {-0.14f, 0, 0.0032f}, {-0.18f, 0.02f, 0.0032f}}),
               0.003f, 6));
   LightOptions light;
-  light.type = "disk";
+  light.type = LightType::kDisk;
   const float a = lean * kPi / 180;
   const Vec3f mouth =
       head + Vec3f{0.025f, 0, -0.035f} + Vec3f{-std::sin(a), 0, -std::cos(a)} * 0.030f;

@@ -220,7 +220,7 @@ Prop range_hood(Workshop& shop) {
            cylinder(0.028f, -z + 0.012f, -z + 0.018f).moved(x - 0.06f, side * y * 0.6f, 0));
     LightOptions lamp;
     lamp.name = side > 0 ? "right" : "left";
-    lamp.type = "spot";
+    lamp.type = LightType::kSpot;
     lamp.position = {x - 0.06, side * y * 0.6, -z + 0.008};
     lamp.flux = 180;
     lamp.temperature = 3000;

@@ -195,7 +195,7 @@ Prop street_lamp(Workshop& shop) {
   b.collide_box({0.42f, -0.14f, z + 0.01f}, {1.04f, 0.14f, z + 0.1f});
   b.mass = 14 * z + 9;
   LightOptions lamp;
-  lamp.type = "rect";
+  lamp.type = LightType::kRect;
   lamp.position = {0.765, 0, z + 0.010};
   lamp.size = {0.42, 0.2};
   lamp.flux = 8000;

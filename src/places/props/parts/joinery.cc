@@ -163,7 +163,7 @@ Solid shade(float radius_low, float radius_high, float z0, float z1) {
 
 void add_bulb(Prop* p, Vec3f at, double flux, double temperature, double radius) {
   LightOptions light;
-  light.type = "sphere";
+  light.type = LightType::kSphere;
   light.position = {at.x, at.y, at.z};
   light.flux = flux;
   light.temperature = temperature;

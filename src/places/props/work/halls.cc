@@ -62,7 +62,7 @@ Prop high_bay_lamp(Workshop& shop) {
   b.collide_cylinder(r, low, low + 0.14f);
   b.mass = 3.6;
   LightOptions lamp;
-  lamp.type = "disk";
+  lamp.type = LightType::kDisk;
   lamp.position = {0, 0, low - 0.002};
   lamp.radius = 0.145;
   lamp.flux = 18000;
@@ -104,7 +104,7 @@ Prop strip_lamp(Workshop& shop) {
   b.collide_box({-0.045f, -y, low}, {0.045f, y, 0});
   b.mass = 1.6;
   LightOptions lamp;
-  lamp.type = "rect";
+  lamp.type = LightType::kRect;
   lamp.position = {0, 0, low};
   lamp.size = {0.05, 2.0 * y - 0.05};
   lamp.flux = 4000;

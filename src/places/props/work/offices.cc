@@ -273,7 +273,7 @@ Prop panel_lamp(Workshop& shop) {
   b.collide_box({-h, -h, -0.012f}, {h, h, 0});
   b.mass = 2.4;
   LightOptions light;
-  light.type = "rect";
+  light.type = LightType::kRect;
   light.position = {0, 0, -0.0095};
   light.size = {double(edge) - 0.032, double(edge) - 0.032};
   light.flux = 3600;

@@ -166,9 +166,9 @@ class ReflectedRays {
   ReflectedRays(const InteractiveWorld<CpuTracer>& world, uint32_t picture, TileRequests* requests)
       : world_(world), picture_(picture), requests_(*requests) {}
 
-  void add(const ReflectionOf<F>& rays, PendingBlock* block) {
-    each_lane(rays.use.goes, [&](int i) {
-      copy_lane(rays, i, &rays_, count_);
+  void add(const ReflectionOf<F>& reflection, PendingBlock* block) {
+    each_lane(reflection.use.goes, [&](int i) {
+      copy_lane(reflection.reflected, i, &rays_, count_);
       of_[count_++] = {block, i};
       if (count_ == kLaneCount) trace();
     });
@@ -202,7 +202,7 @@ class ReflectedRays {
   const InteractiveWorld<CpuTracer>& world_;
   const uint32_t picture_;
   TileRequests& requests_;
-  ReflectionOf<F> rays_;
+  ReflectedRayOf<F> rays_;
   Place of_[kLaneCount];
   int count_ = 0;
   uint64_t traced_ = 0;

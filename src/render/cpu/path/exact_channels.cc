@@ -44,8 +44,7 @@ class ChannelLanes {
     const MaskLanes hidden = color_only_lanes<F>(job_.scene, hit.instance, found);
     each_lane(found & ((s.opacity < 0.5f) | hidden), [&](int i) {
       if (shows(job_.scene, lane(s, i))) return;
-      const RayCone one{lane(cone.width, i), lane(cone.spread, i)};
-      store(i, look_through(lane(ray, i), one), details);
+      store(i, look_through(lane(ray, i), lane(cone, i)), details);
     });
     return rays_;
   }

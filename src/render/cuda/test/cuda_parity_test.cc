@@ -164,12 +164,12 @@ TEST_F(CudaParity, LightThatMovesIsThatOfTheInstant) {
   d.sky.environment = {"start", sky.width, sky.height, std::move(sky.texels)};
   d.sky.day = day;
   LightDescription sun;
-  sun.type = LightType::kDirectional;
+  sun.type = PunctualLightType::kDirectional;
   sun.radius = 0.005f;
   sun.body = 0;
   sun.of_sky = true;
   LightDescription beacon = lamp({4e5f, 1e5f, 1e5f}, 0.05f);
-  beacon.type = LightType::kSpot;
+  beacon.type = PunctualLightType::kSpot;
   beacon.cos_cutoff = 0.9f;
   beacon.body = 0;
   beacon.motion = 0;

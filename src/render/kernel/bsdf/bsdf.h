@@ -20,18 +20,10 @@ struct BsdfOf {
   Vec2Of<F> alpha;    ///< GGX widths along x and y
   F root_o{};         ///< smith_root of the viewing direction
   F p_layer{};        ///< probability of sampling the layer
+  using Members = MemberList<&BsdfOf::diffuse, &BsdfOf::f0, &BsdfOf::f90, &BsdfOf::alpha,
+                             &BsdfOf::root_o, &BsdfOf::p_layer>;
 };
 using Bsdf = BsdfOf<float>;
-
-template <class F>
-GLOAM_HD void set_lane(BsdfOf<F>* b, int i, const Bsdf& value) {
-  set_lane(&b->diffuse, i, value.diffuse);
-  set_lane(&b->f0, i, value.f0);
-  set_lane(&b->f90, i, value.f90);
-  set_lane(&b->alpha, i, value.alpha);
-  set_lane(&b->root_o, i, value.root_o);
-  set_lane(&b->p_layer, i, value.p_layer);
-}
 
 template <class F>
 struct BsdfSampleOf {

@@ -26,6 +26,15 @@ struct LayeredBsdfOf {
   MaskOf<F> straight =
       false;         ///< light that goes through a sheet is not scattered: no part of this
   Vec3Of<F> beyond;  ///< albedo of diffuse light that goes through
+  using Members =
+      MemberList<&LayeredBsdfOf::base, &LayeredBsdfOf::layered, &LayeredBsdfOf::p_base,
+                 &LayeredBsdfOf::p_coat, &LayeredBsdfOf::p_fuzz, &LayeredBsdfOf::p_glass,
+                 &LayeredBsdfOf::p_beyond, &LayeredBsdfOf::under, &LayeredBsdfOf::coat_alpha,
+                 &LayeredBsdfOf::coat_root, &LayeredBsdfOf::coat_f0, &LayeredBsdfOf::coat_f90,
+                 &LayeredBsdfOf::fuzz, &LayeredBsdfOf::fuzz_alpha, &LayeredBsdfOf::glass,
+                 &LayeredBsdfOf::eta, &LayeredBsdfOf::glass_alpha, &LayeredBsdfOf::glass_root,
+                 &LayeredBsdfOf::tint, &LayeredBsdfOf::thin, &LayeredBsdfOf::straight,
+                 &LayeredBsdfOf::beyond>;
 };
 using LayeredBsdf = LayeredBsdfOf<float>;
 
@@ -311,32 +320,6 @@ GLOAM_HD LayeredBsdf make_layered(const SceneView& scene, const MaterialLayers& 
   b.p_beyond = weight[4] * scale;
   b.p_base = max(1.0f - b.p_coat - b.p_fuzz - b.p_glass - b.p_beyond, 0.0f);
   return b;
-}
-
-template <class F>
-GLOAM_HD void set_lane(LayeredBsdfOf<F>* b, int i, const LayeredBsdf& value) {
-  set_lane(&b->base, i, value.base);
-  set_lane(&b->layered, i, true);
-  set_lane(&b->p_base, i, value.p_base);
-  set_lane(&b->p_coat, i, value.p_coat);
-  set_lane(&b->p_fuzz, i, value.p_fuzz);
-  set_lane(&b->p_glass, i, value.p_glass);
-  set_lane(&b->p_beyond, i, value.p_beyond);
-  set_lane(&b->under, i, value.under);
-  set_lane(&b->coat_alpha, i, value.coat_alpha);
-  set_lane(&b->coat_root, i, value.coat_root);
-  set_lane(&b->coat_f0, i, value.coat_f0);
-  set_lane(&b->coat_f90, i, value.coat_f90);
-  set_lane(&b->fuzz, i, value.fuzz);
-  set_lane(&b->fuzz_alpha, i, value.fuzz_alpha);
-  set_lane(&b->glass, i, value.glass);
-  set_lane(&b->eta, i, value.eta);
-  set_lane(&b->glass_alpha, i, value.glass_alpha);
-  set_lane(&b->glass_root, i, value.glass_root);
-  set_lane(&b->tint, i, value.tint);
-  set_lane(&b->thin, i, value.thin);
-  set_lane(&b->straight, i, value.straight);
-  set_lane(&b->beyond, i, value.beyond);
 }
 
 }  // namespace gloam

@@ -16,13 +16,6 @@ struct ExactChannelsOf {
 };
 using ExactChannels = ExactChannelsOf<float>;
 
-template <class F>
-GLOAM_HD ExactChannels lane(const ExactChannelsOf<F>& c, int i) {
-  return {lane(c.depth, i),         lane(c.distance, i),      lane(c.part, i),
-          lane(c.center_normal, i), lane(c.center_albedo, i), lane(c.motion, i),
-          lane(c.scene_flow, i)};
-}
-
 /// Calls visit(plane of each) for the channels of one or more ExactChannels, Films or DeviceFilms:
 /// where a surface is and which, and the details.
 template <class Visit, class... Planes>
@@ -37,6 +30,15 @@ GLOAM_HD void visit_details(const Visit& visit, Planes&... planes) {
   visit(planes.center_albedo...);
   visit(planes.motion...);
   visit(planes.scene_flow...);
+}
+
+template <class F>
+GLOAM_HD ExactChannels lane(const ExactChannelsOf<F>& c, int i) {
+  ExactChannels out;
+  const auto get = [i](auto& to, const auto& from) { to = lane(from, i); };
+  visit_places(get, out, c);
+  visit_details(get, out, c);
+  return out;
 }
 
 /// Whether the exact channels stop at a surface: evenly transparent surfaces count as things, as

@@ -233,22 +233,24 @@ class CameraRays {
     use.borrows = use.together & !pixels_.leaders.of_quad;
     use.goes =
         at->traced & !use.borrows & (sample.pdf > 0.0f) & (max_component(sample.weight) > 0.0f);
-    r.ray = path_.ray;
-    r.ray.o = leave_surface(v.p, v.geometric, wi, v.t);
-    r.ray.d = wi;
-    r.cone_width = path_.cone_width;
-    r.cone_spread = path_.cone_spread + interactive::kLobeWidening *
-                                            square_root(min(1.0f / (kPi * sample.pdf), F(1.0f)));
-    r.pdf = sample.pdf;
-    r.flames = !blurs_flames(v, s.shiny);
-    r.from = v.p;
-    r.normal = v.geometric;
-    r.lists = at->lists;
-    r.sampler = path_.sampler;
+    ReflectedRayOf<F>& reflected = r.reflected;
+    reflected.ray = path_.ray;
+    reflected.ray.o = leave_surface(v.p, v.geometric, wi, v.t);
+    reflected.ray.d = wi;
+    reflected.cone_width = path_.cone_width;
+    reflected.cone_spread =
+        path_.cone_spread +
+        interactive::kLobeWidening * square_root(min(1.0f / (kPi * sample.pdf), F(1.0f)));
+    reflected.pdf = sample.pdf;
+    reflected.flames = !blurs_flames(v, s.shiny);
+    reflected.from = v.p;
+    reflected.normal = v.geometric;
+    reflected.lists = at->lists;
+    reflected.sampler = path_.sampler;
     use.weight = sample.weight;
     use.albedo = at->reflected;
     if (const Mask now = use.goes & at->pane; any(now)) {
-      const Vec3Of<F> seen = trace_reflection(world_, r, now, &path_.result.rays,
+      const Vec3Of<F> seen = trace_reflection(world_, reflected, now, &path_.result.rays,
                                               requests_ + kReflectionRequest * kLanes);
       at->lamps.specular += select<F>(now, sample.weight * seen, Vec3Of<F>{});
     }
@@ -262,7 +264,7 @@ class CameraRays {
       return;
     }
     ReflectionUseOf<F>& all = out_.reflection.use;
-    each_lane(solid, [&](int i) { copy_lane(r, i, &out_.reflection, i); });
+    each_lane(solid, [&](int i) { copy_lane(r.reflected, i, &out_.reflection.reflected, i); });
     all.weight = select<F>(solid, r.use.weight, all.weight);
     all.albedo = select<F>(solid, r.use.albedo, all.albedo);
     all.goes = all.goes | r.use.goes;

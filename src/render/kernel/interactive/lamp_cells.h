@@ -41,8 +41,9 @@ struct LampListsOf {
     of[i] = cell;
     set_lane(&known, i, cell != nullptr);
   }
-  /// Lane i of `from` into lane k.
-  GLOAM_HD void take_lane(int k, const LampListsOf& from, int i) { set(k, from.of[i]); }
+  friend GLOAM_HD void copy_lane(const LampListsOf& from, int i, LampListsOf* to, int k) {
+    to->set(k, from.of[i]);
+  }
 };
 
 /// A lamp that several lanes take, and whether static geometry hides it from them.

@@ -15,10 +15,9 @@ struct ReflectionUseOf {
   Vec3Of<F> albedo;            ///< of all light that is reflected
 };
 
-/// Reflection rays of surfaces.
+/// Rays of reflections, with all that the light along them depends on.
 template <class F>
-struct ReflectionOf {
-  ReflectionUseOf<F> use;
+struct ReflectedRayOf {
   RayOf<F> ray;
   F cone_width = 0.0f, cone_spread = 0.0f;  ///< at the surface [m], and along the ray [m/m]
   F pdf = 0.0f;                             ///< of the ray's direction [1/sr]
@@ -26,28 +25,24 @@ struct ReflectionOf {
   Vec3Of<F> from, normal;                   ///< the surface [m], and its geometric normal
   LampListsOf<F> lists;                     ///< lamps of the surface
   SamplerOf<F> sampler;
+  using Members =
+      MemberList<&ReflectedRayOf::ray, &ReflectedRayOf::cone_width, &ReflectedRayOf::cone_spread,
+                 &ReflectedRayOf::pdf, &ReflectedRayOf::flames, &ReflectedRayOf::from,
+                 &ReflectedRayOf::normal, &ReflectedRayOf::lists, &ReflectedRayOf::sampler>;
 };
 
-/// Copies the ray of lane i of `from` into lane k of `to`.
+/// Reflections of surfaces.
 template <class F>
-GLOAM_HD void copy_lane(const ReflectionOf<F>& from, int i, ReflectionOf<F>* to, int k) {
-  set_lane(&to->ray.o, k, lane(from.ray.o, i));
-  set_lane(&to->ray.d, k, lane(from.ray.d, i));
-  set_lane(&to->ray.time, k, lane(from.ray.time, i));
-  set_lane(&to->cone_width, k, lane(from.cone_width, i));
-  set_lane(&to->cone_spread, k, lane(from.cone_spread, i));
-  set_lane(&to->pdf, k, lane(from.pdf, i));
-  set_lane(&to->flames, k, lane(from.flames, i));
-  set_lane(&to->from, k, lane(from.from, i));
-  set_lane(&to->normal, k, lane(from.normal, i));
-  to->lists.take_lane(k, from.lists, i);
-  to->sampler.take_lane(k, from.sampler, i);
-}
+struct ReflectionOf {
+  ReflectionUseOf<F> use;
+  ReflectedRayOf<F> reflected;
+};
 
 /// Light that the rays of the `active` lanes bring [cd/m²].
 template <class F, class Tracer>
-GLOAM_HD Vec3Of<F> trace_reflection(const InteractiveWorld<Tracer>& world, const ReflectionOf<F>& r,
-                                    MaskOf<F> active, UintOf<F>* rays, CacheRequest* requests) {
+GLOAM_HD Vec3Of<F> trace_reflection(const InteractiveWorld<Tracer>& world,
+                                    const ReflectedRayOf<F>& r, MaskOf<F> active, UintOf<F>* rays,
+                                    CacheRequest* requests) {
   paths::State<F> path;
   path.ray = r.ray;
   path.cone_width = r.cone_width;

@@ -15,30 +15,11 @@ struct LightSampleOf {
   F pdf{};             ///< per solid angle, selection included; delta: of the selection; 0 = none
   MaskOf<F> is_delta = MaskOf<F>(false);
   MaskOf<F> casts_shadow = MaskOf<F>(true);
+  using Members = MemberList<&LightSampleOf::wi, &LightSampleOf::distance, &LightSampleOf::lift,
+                             &LightSampleOf::radiance, &LightSampleOf::pdf,
+                             &LightSampleOf::is_delta, &LightSampleOf::casts_shadow>;
 };
 using LightSample = LightSampleOf<float>;
-
-template <class F>
-GLOAM_HD LightSampleOf<F> select(MaskOf<F> m, const LightSampleOf<F>& a,
-                                 const LightSampleOf<F>& b) {
-  return {select<F>(m, a.wi, b.wi),
-          select(m, a.distance, b.distance),
-          select<F>(m, a.lift, b.lift),
-          select<F>(m, a.radiance, b.radiance),
-          select(m, a.pdf, b.pdf),
-          select(m, a.is_delta, b.is_delta),
-          select(m, a.casts_shadow, b.casts_shadow)};
-}
-template <class F>
-GLOAM_HD void set_lane(LightSampleOf<F>* s, int i, const LightSample& value) {
-  set_lane(&s->wi, i, value.wi);
-  set_lane(&s->distance, i, value.distance);
-  set_lane(&s->lift, i, value.lift);
-  set_lane(&s->radiance, i, value.radiance);
-  set_lane(&s->pdf, i, value.pdf);
-  set_lane(&s->is_delta, i, value.is_delta);
-  set_lane(&s->casts_shadow, i, value.casts_shadow);
-}
 
 /// Share of a lamp's full intensity in the unit direction from its centre.
 template <class F>

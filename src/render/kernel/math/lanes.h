@@ -41,6 +41,11 @@ GLOAM_HD bool lane(bool x, int) { return x; }
 GLOAM_HD void set_lane(float* x, int, float value) { *x = value; }
 GLOAM_HD void set_lane(uint32_t* x, int, uint32_t value) { *x = value; }
 GLOAM_HD void set_lane(bool* x, int, bool value) { *x = value; }
+/// Copies lane i of `from` into lane k of `to`.
+template <class T>
+GLOAM_HD void copy_lane(const T& from, int i, T* to, int k) {
+  set_lane(to, k, lane(from, i));
+}
 /// Calls visit(i) for every lane i of the mask.
 template <class Visit>
 GLOAM_HD void each_lane(bool mask, const Visit& visit) {
@@ -81,13 +86,48 @@ using UintOf = typename Lanes<F>::Uint;
 
 namespace gloam {
 
-template <class F>
-GLOAM_HD Vec2Of<F> select(MaskOf<F> m, Vec2Of<F> a, Vec2Of<F> b) {
-  return {select(m, a.x, b.x), select(m, a.y, b.y)};
+// Lanes of types over F are read, set, copied and selected by one list: Of<F>::Members.
+namespace lane_copies {
+
+template <class To, class From, auto... kTo, auto... kFrom>
+GLOAM_HD void get(To* to, const From& from, int i, MemberList<kTo...>, MemberList<kFrom...>) {
+  ((to->*kTo = lane(from.*kFrom, i)), ...);
 }
-template <class F>
-GLOAM_HD Vec3Of<F> select(MaskOf<F> m, Vec3Of<F> a, Vec3Of<F> b) {
-  return {select(m, a.x, b.x), select(m, a.y, b.y), select(m, a.z, b.z)};
+template <class To, class From, auto... kTo, auto... kFrom>
+GLOAM_HD void set(To* to, int i, const From& from, MemberList<kTo...>, MemberList<kFrom...>) {
+  (set_lane(&(to->*kTo), i, from.*kFrom), ...);
+}
+template <class Mask, class T, auto... kMembers>
+GLOAM_HD void select_each(T* to, Mask m, const T& a, const T& b, MemberList<kMembers...>) {
+  ((to->*kMembers = select(m, a.*kMembers, b.*kMembers)), ...);
+}
+template <class T, auto... kMembers>
+GLOAM_HD void copy(const T& from, int i, T* to, int k, MemberList<kMembers...>) {
+  (copy_lane(from.*kMembers, i, &(to->*kMembers), k), ...);
+}
+
+}  // namespace lane_copies
+
+template <template <class> class Of, class F>
+GLOAM_HD Of<float> lane(const Of<F>& x, int i) {
+  Of<float> out;
+  lane_copies::get(&out, x, i, MembersOf<Of<float>>{}, typename Of<F>::Members{});
+  return out;
+}
+template <template <class> class Of, class F>
+GLOAM_HD void set_lane(Of<F>* x, int i, const Of<float>& value) {
+  lane_copies::set(x, i, value, typename Of<F>::Members{}, MembersOf<Of<float>>{});
+}
+template <template <class> class Of, class F>
+GLOAM_HD void copy_lane(const Of<F>& from, int i, Of<F>* to, int k) {
+  static_assert(MembersOf<Of<float>>::kCount > 0);  // checks the list
+  lane_copies::copy(from, i, to, k, typename Of<F>::Members{});
+}
+template <class F, template <class> class Of>
+GLOAM_HD Of<F> select(MaskOf<F> m, const Of<F>& a, const Of<F>& b) {
+  Of<F> out;
+  lane_copies::select_each(&out, m, a, b, typename Of<F>::Members{});
+  return out;
 }
 
 /// The same vector in every lane.
@@ -98,36 +138,6 @@ GLOAM_HD Vec3Of<F> in_all_lanes(Vec3f v) {
 template <class F>
 GLOAM_HD AffineOf<F> pose_in_all_lanes(const Affine3f& X) {
   return {in_all_lanes<F>(X.x), in_all_lanes<F>(X.y), in_all_lanes<F>(X.z), in_all_lanes<F>(X.p)};
-}
-template <class F>
-GLOAM_HD Vec3f lane(const Vec3Of<F>& v, int i) {
-  return {lane(v.x, i), lane(v.y, i), lane(v.z, i)};
-}
-template <class F>
-GLOAM_HD Vec2f lane(const Vec2Of<F>& v, int i) {
-  return {lane(v.x, i), lane(v.y, i)};
-}
-template <class F>
-GLOAM_HD void set_lane(Vec2Of<F>* v, int i, Vec2f value) {
-  set_lane(&v->x, i, value.x);
-  set_lane(&v->y, i, value.y);
-}
-template <class F>
-GLOAM_HD void set_lane(Vec3Of<F>* v, int i, Vec3f value) {
-  set_lane(&v->x, i, value.x);
-  set_lane(&v->y, i, value.y);
-  set_lane(&v->z, i, value.z);
-}
-template <class F>
-GLOAM_HD void set_lane(AffineOf<F>* X, int i, const Affine3f& value) {
-  set_lane(&X->x, i, value.x);
-  set_lane(&X->y, i, value.y);
-  set_lane(&X->z, i, value.z);
-  set_lane(&X->p, i, value.p);
-}
-template <class F>
-GLOAM_HD Affine3f lane(const AffineOf<F>& X, int i) {
-  return {lane(X.x, i), lane(X.y, i), lane(X.z, i), lane(X.p, i)};
 }
 
 }  // namespace gloam

@@ -10,6 +10,7 @@ struct RayOf {
   Vec3Of<F> o, d;     ///< origin, unit direction
   F tmax = F(1e30f);  ///< [m]
   F time = F(0.0f);   ///< 0 = shutter opens, 1 = it closes
+  using Members = MemberList<&RayOf::o, &RayOf::d, &RayOf::tmax, &RayOf::time>;
 };
 using Ray = RayOf<float>;
 
@@ -21,27 +22,10 @@ struct RayHitOf {
   UintOf<F> primitive{};  ///< triangle of a mesh
   F u{}, v{};             ///< barycentric weights of its second and third corner
   Vec3Of<F> normal;       ///< of a triangle's geometry, world, not normalised
+  using Members = MemberList<&RayHitOf::t, &RayHitOf::instance, &RayHitOf::primitive, &RayHitOf::u,
+                             &RayHitOf::v, &RayHitOf::normal>;
 };
 using RayHit = RayHitOf<float>;
-
-template <class F>
-GLOAM_HD Ray lane(const RayOf<F>& ray, int i) {
-  return {lane(ray.o, i), lane(ray.d, i), lane(ray.tmax, i), lane(ray.time, i)};
-}
-template <class F>
-GLOAM_HD RayHit lane(const RayHitOf<F>& hit, int i) {
-  return {lane(hit.t, i), lane(hit.instance, i), lane(hit.primitive, i),
-          lane(hit.u, i), lane(hit.v, i),        lane(hit.normal, i)};
-}
-template <class F>
-GLOAM_HD void set_lane(RayHitOf<F>* hit, int i, const RayHit& value) {
-  set_lane(&hit->t, i, value.t);
-  set_lane(&hit->instance, i, value.instance);
-  set_lane(&hit->primitive, i, value.primitive);
-  set_lane(&hit->u, i, value.u);
-  set_lane(&hit->v, i, value.v);
-  set_lane(&hit->normal, i, value.normal);
-}
 
 /// Sine and cosine of 2 pi u, u in [0, 1): error < 1e-6; the same on every device.
 template <class F>

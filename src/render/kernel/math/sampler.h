@@ -84,12 +84,11 @@ class SamplerOf {
     return s;
   }
 
-  /// Goes on in the lane `to` from where `other`, of the same seed, frame and turn, is in its lane
-  /// `from`.
-  GLOAM_HD void take_lane(int to, const SamplerOf& other, int from) {
-    seed_ = other.seed_;
-    set_lane(&reversed_index_, to, lane(other.reversed_index_, from));
-    set_lane(&dimension_, to, lane(other.dimension_, from));
+  /// Goes on in lane k from where `from`, of the same seed, frame and turn, is in its lane i.
+  friend GLOAM_HD void copy_lane(const SamplerOf& from, int i, SamplerOf* to, int k) {
+    to->seed_ = from.seed_;
+    copy_lane(from.reversed_index_, i, &to->reversed_index_, k);
+    copy_lane(from.dimension_, i, &to->dimension_, k);
   }
   /// The given lanes go on as `other`, of the same picture.
   GLOAM_HD void take(Mask lanes, const SamplerOf& other) {

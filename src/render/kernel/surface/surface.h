@@ -142,12 +142,7 @@ GLOAM_HD_LARGE SurfaceOf<F> make_surface(const SceneView& scene, const RayOf<F>&
     Surface one = lane(s, i);
     surfaces::apply_textures(scene, scene.instances[one.instance], lane(hit, i), lane(at.X_WG, i),
                              lane(at.p_G, i), width_at(i), lane(ray.time, i), &one);
-    set_lane(&s.normal, i, one.normal);
-    set_lane(&s.base_color, i, one.base_color);
-    set_lane(&s.emission, i, one.emission);
-    set_lane(&s.metallic, i, one.metallic);
-    set_lane(&s.roughness, i, one.roughness);
-    set_lane(&s.opacity, i, one.opacity);
+    lane_copies::set(&s, i, one, typename SurfaceOf<F>::Textured{}, Surface::Textured{});
   });
   const MaskOf<F> inside = cosine > 0.0f;
   s.outside = !inside;
@@ -183,12 +178,20 @@ GLOAM_HD LayeredBsdfOf<F> surface_bsdf(const SceneView& scene, const SurfaceOf<F
     each_lane(active, [&](int i) {
       const int row = scene.materials[scene.instances[lane(s.instance, i)].material].layers;
       if (row < 0) return;
-      const SurfaceParameters base{lane(s.base_color, i),  lane(s.metallic, i),
-                                   lane(s.roughness, i),   lane(s.f0, i),
-                                   lane(s.f90, i),         lane(s.outside, i),
-                                   lane(s.coat_weight, i), lane(s.coat_roughness, i),
-                                   lane(s.coat_f0, i),     lane(s.coat_darkening, i),
-                                   lane(s.fuzz_weight, i), lane(s.transmission, i)};
+      const SurfaceParameters base{
+          .base_color = lane(s.base_color, i),
+          .metallic = lane(s.metallic, i),
+          .roughness = lane(s.roughness, i),
+          .f0 = lane(s.f0, i),
+          .f90 = lane(s.f90, i),
+          .outside = lane(s.outside, i),
+          .coat_weight = lane(s.coat_weight, i),
+          .coat_roughness = lane(s.coat_roughness, i),
+          .coat_f0 = lane(s.coat_f0, i),
+          .coat_darkening = lane(s.coat_darkening, i),
+          .fuzz_weight = lane(s.fuzz_weight, i),
+          .transmission = lane(s.transmission, i),
+      };
       set_lane(
           &bsdf, i,
           make_layered(scene, scene.layers[static_cast<uint32_t>(row)], base, lane(wo_local, i)));

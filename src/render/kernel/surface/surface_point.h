@@ -15,6 +15,7 @@ GLOAM_HD Vec3Of<F> to_frame(const AffineOf<F>& X_AB, Vec3Of<F> v_A) {
 template <class F>
 struct RayConeOf {
   F width{}, spread{};
+  using Members = MemberList<&RayConeOf::width, &RayConeOf::spread>;
 };
 using RayCone = RayConeOf<float>;
 
@@ -35,52 +36,18 @@ struct SurfaceOf {
   Vec3Of<F> tangent;   ///< unit, across `normal`: highlights are drawn out along it; zero = round
   // Layers, in materials that have some: as in MaterialLayers, patterns and weather included.
   F coat_weight{}, coat_roughness{}, coat_f0{}, coat_darkening{}, fuzz_weight{}, transmission{};
+  using Members =
+      MemberList<&SurfaceOf::p, &SurfaceOf::geometric, &SurfaceOf::normal, &SurfaceOf::t,
+                 &SurfaceOf::outside, &SurfaceOf::instance, &SurfaceOf::base_color,
+                 &SurfaceOf::emission, &SurfaceOf::metallic, &SurfaceOf::roughness, &SurfaceOf::f0,
+                 &SurfaceOf::f90, &SurfaceOf::opacity, &SurfaceOf::straight, &SurfaceOf::tangent,
+                 &SurfaceOf::coat_weight, &SurfaceOf::coat_roughness, &SurfaceOf::coat_f0,
+                 &SurfaceOf::coat_darkening, &SurfaceOf::fuzz_weight, &SurfaceOf::transmission>;
+  /// Members that textures change.
+  using Textured = MemberList<&SurfaceOf::normal, &SurfaceOf::base_color, &SurfaceOf::emission,
+                              &SurfaceOf::metallic, &SurfaceOf::roughness, &SurfaceOf::opacity>;
 };
 using Surface = SurfaceOf<float>;
-
-template <class F>
-GLOAM_HD Surface lane(const SurfaceOf<F>& s, int i) {
-  return {lane(s.p, i),
-          lane(s.geometric, i),
-          lane(s.normal, i),
-          lane(s.t, i),
-          lane(s.outside, i),
-          lane(s.instance, i),
-          lane(s.base_color, i),
-          lane(s.emission, i),
-          lane(s.metallic, i),
-          lane(s.roughness, i),
-          lane(s.f0, i),
-          lane(s.f90, i),
-          lane(s.opacity, i),
-          lane(s.straight, i),
-          lane(s.tangent, i),
-          lane(s.coat_weight, i),
-          lane(s.coat_roughness, i),
-          lane(s.coat_f0, i),
-          lane(s.coat_darkening, i),
-          lane(s.fuzz_weight, i),
-          lane(s.transmission, i)};
-}
-
-/// Lane i of the members that textures and layers change.
-template <class F>
-GLOAM_HD void set_lane(SurfaceOf<F>* s, int i, const Surface& value) {
-  set_lane(&s->normal, i, value.normal);
-  set_lane(&s->base_color, i, value.base_color);
-  set_lane(&s->emission, i, value.emission);
-  set_lane(&s->metallic, i, value.metallic);
-  set_lane(&s->roughness, i, value.roughness);
-  set_lane(&s->opacity, i, value.opacity);
-  set_lane(&s->straight, i, value.straight);
-  set_lane(&s->tangent, i, value.tangent);
-  set_lane(&s->coat_weight, i, value.coat_weight);
-  set_lane(&s->coat_roughness, i, value.coat_roughness);
-  set_lane(&s->coat_f0, i, value.coat_f0);
-  set_lane(&s->coat_darkening, i, value.coat_darkening);
-  set_lane(&s->fuzz_weight, i, value.fuzz_weight);
-  set_lane(&s->transmission, i, value.transmission);
-}
 
 /// Opacity of a surface, the part that lets rays straight through left out: the rest of the light
 /// passes as if nothing were there.
