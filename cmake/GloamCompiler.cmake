@@ -7,6 +7,7 @@ if(NOT CMAKE_BUILD_TYPE)
   set(CMAKE_BUILD_TYPE Release CACHE STRING "" FORCE)
 endif()
 
+# Objects of one clone serve another: paths below the source folder are relative in commands and in __FILE__.
 find_program(GLOAM_CCACHE ccache)
 if(GLOAM_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
   set(CMAKE_CXX_COMPILER_LAUNCHER ${CMAKE_COMMAND} -E env CCACHE_BASEDIR=${CMAKE_SOURCE_DIR} CCACHE_NOHASHDIR=1 ${GLOAM_CCACHE})
@@ -30,6 +31,7 @@ if(CMAKE_CXX_COMPILER_ID MATCHES "Clang")
   # The kernel is generic over bool and lanes (render/kernel/math/lanes.h); GCC 12's std::stable_sort calls what C++17 deprecates.
   add_compile_options(-Wno-bitwise-instead-of-logical -Wno-deprecated-declarations)
 endif()
+add_compile_options(-fmacro-prefix-map=${CMAKE_SOURCE_DIR}/=)
 add_compile_options("$<$<CONFIG:Release>:-O3>")
 if(CMAKE_SYSTEM_PROCESSOR STREQUAL "x86_64")
   # Results are the same on every level; rays are traced in sixteens with AVX-512, else in eights.

@@ -9,6 +9,11 @@ function(gloam_unity target)
   set_target_properties(${target} PROPERTIES UNITY_BUILD ${GLOAM_UNITY} UNITY_BUILD_BATCH_SIZE 8)
 endfunction()
 
+# The only object that depends on where the source is, so a compiler cache serves all clones.
+configure_file(${CMAKE_SOURCE_DIR}/src/base/test/source_dir.cc.in ${CMAKE_BINARY_DIR}/generated/source_dir.cc @ONLY)
+add_library(gloam_source_dir STATIC EXCLUDE_FROM_ALL ${CMAKE_BINARY_DIR}/generated/source_dir.cc)
+target_include_directories(gloam_source_dir PRIVATE ${CMAKE_SOURCE_DIR}/src)
+
 # gloam_module(NAME [FAST_TESTS] [COLD] [DEPENDS targets…] [TEST_DEPENDS targets…] [EXCLUDE files…])
 # One folder of src/ = one static library gloam_NAME of all its .cc files (test/ and fuzz/ apart),
 # one test program gloam_NAME_test of test/*_test.cc (FAST_TESTS: its tests do the work themselves, in code that headers
@@ -45,11 +50,10 @@ function(gloam_module name)
   if(tests)
     add_executable(${target}_test ${tests})
     gloam_unity(${target}_test)
-    target_link_libraries(${target}_test PRIVATE ${target} ${arg_TEST_DEPENDS} GTest::gtest GTest::gmock GTest::gtest_main)
+    target_link_libraries(${target}_test PRIVATE ${target} ${arg_TEST_DEPENDS} gloam_source_dir GTest::gtest GTest::gmock GTest::gtest_main)
     if(NOT arg_FAST_TESTS)
       target_compile_options(${target}_test PRIVATE ${GLOAM_TEST_OPTIMISE})
     endif()
-    target_compile_definitions(${target}_test PRIVATE GLOAM_SOURCE_DIR="${CMAKE_SOURCE_DIR}")
     gloam_unit_tests(${name} ${target}_test)
   endif()
 

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "base/test/source_dir.h"
 #include "bridge/test/lab.h"
 
 namespace gloam::bridge {
@@ -11,7 +12,7 @@ class PropSpawn : public Lab {
  protected:
   void SetUp() override {
     Lab::SetUp();
-    const auto room = std::filesystem::path(GLOAM_SOURCE_DIR) / "assets/environments/room/room.xml";
+    const auto room = source_dir() / "assets/environments/room/room.xml";
     write("readme.toml", ("[environment]\nfile = '" + room.string() + "'\n").c_str());
     const Result<Scene> scene = load_scene(folder_ / "readme.toml", {.root = "/"});
     ASSERT_TRUE(scene.ok()) << scene.error().to_string();

@@ -10,6 +10,7 @@
 #include <mutex>
 #include <thread>
 
+#include "base/test/source_dir.h"
 #include "bridge/ros2/dds_node.h"
 #include "bridge/ros2/ros2_names.h"
 #include "bridge/ros2/topic_inlets.h"
@@ -114,7 +115,7 @@ type = "trot"
 class Ros2BridgeTest : public ::testing::Test {
  protected:
   Ros2BridgeTest()
-      : world_(*World::compile(*parse_scene(kBridgeScene, GLOAM_SOURCE_DIR))),
+      : world_(*World::compile(*parse_scene(kBridgeScene, source_dir()))),
         simulation_(*Simulation::create(world_, {.pace = Pace::kRealTime})) {}
 
   World world_;

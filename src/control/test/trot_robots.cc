@@ -5,11 +5,13 @@
 
 #include <algorithm>
 
+#include "base/test/source_dir.h"
+
 namespace gloam {
 
 ModelPtr load_quadruped(double friction, const std::function<void(mjSpec*)>& change) {
   char error[1024] = "";
-  const std::string file = GLOAM_SOURCE_DIR "/assets/robots/quadruped/quadruped.xml";
+  const std::string file = source_dir() / "assets/robots/quadruped/quadruped.xml";
   SpecPtr spec(mj_parseXML(file.c_str(), nullptr, error, sizeof error));
   if (!spec) {
     ADD_FAILURE() << error;

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cstdlib>
 
+#include "base/test/source_dir.h"
 #include "trot_harness.h"
 
 namespace gloam {
@@ -155,7 +156,7 @@ TEST(TrotWalk, DrivesAQuadrupedItWasNotTunedOn) {
 
 TEST(TrotWalk, EachOfTwoRobotsInOneWorldIsDrivenByItsOwnController) {
   char error[1024] = "";
-  const std::string file = GLOAM_SOURCE_DIR "/assets/robots/quadruped/quadruped.xml";
+  const std::string file = source_dir() / "assets/robots/quadruped/quadruped.xml";
   std::vector<SpecPtr> robots;
   SpecPtr level(mj_makeSpec());
   mjsBody* world = mjs_findBody(level.get(), "world");

@@ -6,6 +6,7 @@
 #include <fstream>
 #include <sstream>
 
+#include "base/test/source_dir.h"
 #include "policy/test/leg_robot.h"
 #include "scene/toml/toml_reader.h"
 
@@ -149,7 +150,7 @@ TEST(PolicySpec, DamagedMetadataIsRejectedInWords) {
 
 // Copies of settings with random bytes exchanged: a spec or an error with a message.
 TEST(PolicySpec, DamagedSettingsAreReadSafely) {
-  std::ifstream file(GLOAM_SOURCE_DIR "/examples/python/g1_dance.toml");
+  std::ifstream file(source_dir() / "examples/python/g1_dance.toml");
   std::stringstream text;
   text << file.rdbuf();
   const std::string whole = text.str();

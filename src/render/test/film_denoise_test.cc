@@ -6,6 +6,7 @@
 
 #include "base/parallel.h"
 #include "base/rng.h"
+#include "base/test/source_dir.h"
 #include "render/film/denoise.h"
 
 namespace gloam {
@@ -82,7 +83,7 @@ class DenoiseTest : public testing::TestWithParam<std::string> {
       denoiser_ = make_edge_denoiser();
       return;
     }
-    setenv("GLOAM_HOME", GLOAM_SOURCE_DIR, 1);
+    setenv("GLOAM_HOME", source_dir().c_str(), 1);
     Result<std::unique_ptr<Denoiser>> oidn = make_oidn_denoiser(
         {.quality = GetParam() == "oidn" ? DenoiseQuality::kBalanced : DenoiseQuality::kHigh});
     if (!oidn.ok()) GTEST_SKIP() << oidn.error().to_string();

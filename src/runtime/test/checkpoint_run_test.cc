@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 
+#include "base/test/source_dir.h"
 #include "gloam/controller.h"
 #include "gloam/simulation.h"
 #include "scene/test/temp_folder.h"
@@ -21,8 +22,7 @@ std::unique_ptr<Simulation> start_lockstep(const World& world) {
 }
 
 World example_world(const char* name) {
-  const std::filesystem::path file =
-      std::filesystem::path(GLOAM_SOURCE_DIR) / "examples" / (std::string(name) + ".toml");
+  const std::filesystem::path file = source_dir() / "examples" / (std::string(name) + ".toml");
   return *World::compile(*load_scene(file));
 }
 

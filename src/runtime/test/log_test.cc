@@ -7,6 +7,7 @@
 #include <cmath>
 #include <fstream>
 
+#include "base/test/source_dir.h"
 #include "gloam/controller.h"
 #include "gloam/log.h"
 #include "gloam/log_replay.h"
@@ -362,7 +363,7 @@ TEST_F(Logs, CommandsAreReadBackToTheBit) {
 /// Steps that differ when `seconds` of an example are logged and stepped again; -1 = an error.
 int64_t differing_steps(const std::string& example, double seconds) {
   const TempFolder folder;
-  const Scene scene = *load_scene(fs::path(GLOAM_SOURCE_DIR) / "examples" / (example + ".toml"));
+  const Scene scene = *load_scene(source_dir() / "examples" / (example + ".toml"));
   RunRequest request;
   request.log.file = folder.path() / "run.mcap";
   request.log.topics = {"/clock", "/tf"};

@@ -7,6 +7,7 @@
 
 #include "base/files.h"
 #include "base/hash.h"
+#include "base/test/source_dir.h"
 #include "gloam/program.h"
 #include "gloam/run.h"
 #include "scenes.h"
@@ -247,7 +248,7 @@ TEST_F(RecordedRun, PhysicsDoesNotDependOnBeingRecorded) {
 // The main job itself: controller, contacts, two cameras in the furnished room.
 TEST_F(RecordedRun, TheDemoDoesNotDependOnThreadsOrRecording) {
   ::setenv("GLOAM_CACHE", (folder_.path() / "cache").c_str(), 1);
-  const Result<Scene> scene = load_scene(GLOAM_SOURCE_DIR "/examples/demo.toml");
+  const Result<Scene> scene = load_scene(source_dir() / "examples/demo.toml");
   ASSERT_TRUE(scene.ok()) << scene.error().to_string();
   const Result<World> world = World::compile(*scene);
   ASSERT_TRUE(world.ok()) << world.error().to_string();

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "base/files.h"
+#include "base/test/source_dir.h"
 #include "scene/toml/toml_reader.h"
 #include "scene/validate/validate.h"
 
@@ -12,7 +13,7 @@ namespace {
 class Manual : public ::testing::TestWithParam<const char*> {};
 
 TEST_P(Manual, ShowsValidScenes) {
-  const std::string path = std::string(GLOAM_SOURCE_DIR) + "/docs/" + GetParam();
+  const std::string path = source_dir() / "docs" / GetParam();
   const Result<std::string> text = read_text_file(path);
   ASSERT_TRUE(text.ok()) << text.error().to_string();
   const std::string fence = "```toml\n";

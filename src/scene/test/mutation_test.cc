@@ -7,6 +7,7 @@
 
 #include "base/files.h"
 #include "base/test/mutator.h"
+#include "base/test/source_dir.h"
 #include "scene/files/urdf_text.h"
 #include "scene/files/xml_scan.h"
 #include "scene/robots/robot_models.h"
@@ -43,8 +44,7 @@ void expect_answers(const std::vector<std::string>& seeds,
 
 TEST(Mutations, SceneFilesDoNoHarm) {
   std::vector<std::string> seeds;
-  const std::filesystem::path folder =
-      std::string(GLOAM_SOURCE_DIR) + "/tests/fuzz/scene_toml_fuzz";
+  const std::filesystem::path folder = source_dir() / "tests/fuzz/scene_toml_fuzz";
   for (const char* name : {"light.toml", "sensors.toml"})
     seeds.push_back(read_text_file(folder / name).value());
   expect_answers(seeds, [](const std::string& text) -> Status {
@@ -70,10 +70,8 @@ TEST(Mutations, RobotsOfACatalogueDoNoHarm) {
     GLOAM_TRY_STATUS(read_scene_toml(scene, file.string(), &out));
     return validate_scene(out);
   };
-  expect_answers(
-      {read_text_file(std::string(GLOAM_SOURCE_DIR) + "/tests/fuzz/robot_entry_fuzz/cart.toml")
-           .value()},
-      read, (folder.path() / "damaged").string());
+  expect_answers({read_text_file(source_dir() / "tests/fuzz/robot_entry_fuzz/cart.toml").value()},
+                 read, (folder.path() / "damaged").string());
 }
 
 TEST(Mutations, ModelsDoNoHarm) {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
+#include "base/test/source_dir.h"
 #include "gloam/options.h"
 #include "gloam/program.h"
 #include "scene/robots/robot_models.h"
@@ -128,7 +129,7 @@ TEST_F(RobotModels, SensorsAreMountedUnderTheRobotsName) {
 }
 
 TEST_F(RobotModels, TheCatalogueIsTheFoldersWithAnEntry) {
-  const fs::path robots = fs::path(GLOAM_SOURCE_DIR) / "assets/robots";
+  const fs::path robots = source_dir() / "assets/robots";
   const RobotOptions dog = robot("[[robot]]\nmodel = 'quadruped'\ncontroller.goals = []\n");
   EXPECT_EQ(dog.name, "quadruped");
   EXPECT_EQ(dog.file, robots / "quadruped/quadruped.xml");

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "base/files.h"
+#include "base/test/source_dir.h"
 #include "gloam/mjcf.h"
 #include "gloam/scene.h"
 #include "scene/mjcf/schema.h"
@@ -44,12 +45,12 @@ std::vector<std::string> toml_blocks(const std::string& page) {
 
 TEST(Schema, ExamplesAndTheManualAreValid) {
   int count = 0, model_count = 0;
-  for (const auto& file : fs::directory_iterator(fs::path(GLOAM_SOURCE_DIR) / "examples")) {
+  for (const auto& file : fs::directory_iterator(source_dir() / "examples")) {
     if (file.path().extension() != ".toml") continue;
     EXPECT_EQ(scenes().check_toml(read_text_file(file.path()).value()), "") << file.path();
     ++count;
   }
-  for (const auto& file : fs::directory_iterator(fs::path(GLOAM_SOURCE_DIR) / "docs")) {
+  for (const auto& file : fs::directory_iterator(source_dir() / "docs")) {
     if (file.path().extension() != ".md") continue;
     for (const std::string& text : toml_blocks(read_text_file(file.path()).value())) {
       const bool is_model = text.find("[mujoco") != std::string::npos;

@@ -7,6 +7,7 @@
 #include <functional>
 
 #include "base/files.h"
+#include "base/test/source_dir.h"
 #include "gloam/mjcf.h"
 #include "scene/files/urdf_text.h"
 #include "scene/files/xml_scan.h"
@@ -50,8 +51,7 @@ void expect_answers(const std::vector<std::string>& seeds, Mutate mutate, const 
 std::vector<std::string> files(const char* folder, std::vector<const char*> names) {
   std::vector<std::string> texts;
   for (const char* name : names)
-    texts.push_back(
-        read_text_file(std::filesystem::path(GLOAM_SOURCE_DIR) / folder / name).value());
+    texts.push_back(read_text_file(source_dir() / folder / name).value());
   return texts;
 }
 

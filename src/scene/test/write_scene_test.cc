@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 
+#include "base/test/source_dir.h"
 #include "gloam/options.h"
 #include "scene/test/temp_folder.h"
 
@@ -16,7 +17,7 @@ class WrittenExample : public testing::TestWithParam<fs::path> {};
 
 std::vector<fs::path> examples() {
   std::vector<fs::path> files;
-  for (const auto& entry : fs::directory_iterator(fs::path(GLOAM_SOURCE_DIR) / "examples"))
+  for (const auto& entry : fs::directory_iterator(source_dir() / "examples"))
     if (entry.path().extension() == ".toml") files.push_back(entry.path());
   return files;
 }

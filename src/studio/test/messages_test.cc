@@ -8,6 +8,8 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "base/test/source_dir.h"
+
 namespace gloam::studio {
 namespace {
 
@@ -97,7 +99,7 @@ TEST(Messages, PicksSayWhatWasHit) {
 }
 
 TEST(Messages, EveryExampleOfTheDocumentationIsRead) {
-  std::ifstream file(GLOAM_SOURCE_DIR "/docs/view_protocol.md");
+  std::ifstream file(source_dir() / "docs/view_protocol.md");
   const std::string text{std::istreambuf_iterator<char>(file), {}};
   std::set<size_t> types;
   for (size_t at = text.find("`{"); at != std::string::npos; at = text.find("`{", at + 1)) {

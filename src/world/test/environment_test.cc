@@ -7,6 +7,7 @@
 #include <set>
 
 #include "base/files.h"
+#include "base/test/source_dir.h"
 #include "places/generators.h"
 #include "places/writer/place_writer.h"
 #include "scene/test/temp_folder.h"
@@ -55,7 +56,7 @@ TEST_F(GeneratedEnvironment, RefusesWhatItCannotMake) {
 }
 
 TEST_F(GeneratedEnvironment, IsMadeAsTheManualShowsIt) {
-  const std::filesystem::path source = GLOAM_SOURCE_DIR;
+  const std::filesystem::path& source = source_dir();
   std::string manual = read_text_file(source / "docs/environments.md").value();
   const std::string here = "\"../assets/";
   for (size_t at = manual.find(here); at != std::string::npos; at = manual.find(here))

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <set>
 
+#include "base/test/source_dir.h"
 #include "gloam/world.h"
 #include "places/catalogue.h"
 #include "scene/test/temp_folder.h"
@@ -55,7 +56,7 @@ class PropsEverywhere : public ::testing::Test {
 };
 
 TEST_F(PropsEverywhere, StandInEveryModelOfTheRepository) {
-  const fs::path places = fs::path(GLOAM_SOURCE_DIR) / "assets/environments";
+  const fs::path places = source_dir() / "assets/environments";
   int count = 0;
   for (const fs::directory_entry& entry : fs::directory_iterator(places)) {
     const fs::path file = entry.path() / (entry.path().filename().string() + ".xml");

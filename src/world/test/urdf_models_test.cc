@@ -6,6 +6,7 @@
 
 #include <bit>
 
+#include "base/test/source_dir.h"
 #include "gloam/model_tools.h"
 #include "gloam/world.h"
 #include "scene/test/temp_folder.h"
@@ -53,7 +54,7 @@ class UrdfModels : public ::testing::TestWithParam<Robot> {
     folder_.write("legs/" + meshes + "/wedge.stl", tetrahedron_stl());
     const fs::path file = folder_.path() / "legs/urdf" / (name + ".urdf");
     fs::create_directories(file.parent_path());
-    fs::copy_file(fs::path(GLOAM_SOURCE_DIR "/src/world/test/urdf") / (name + ".urdf"), file);
+    fs::copy_file(source_dir() / "src/world/test/urdf" / (name + ".urdf"), file);
     return file;
   }
   ModelCheck check(const fs::path& file) const {
