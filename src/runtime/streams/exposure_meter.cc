@@ -68,6 +68,7 @@ Result<std::unique_ptr<ExposureMeter>> ExposureMeter::open(const StreamContext& 
                         .take = [raw](const SnapshotWindow& now) { return raw->take(now.keys[0]); },
                         .finish =
                             [raw] {
+                              raw->release_world();
                               const std::lock_guard lock(raw->mutex_);
                               raw->ended_ = true;
                               raw->changed_.notify_all();
@@ -95,6 +96,13 @@ Status ExposureMeter::follow(const std::shared_ptr<const CompiledWorld>& world) 
   shared_ = std::move(shared);
   automatic_.set_options(*camera.sensing.imager->auto_exposure);
   return {};
+}
+
+// Pictures of its World may still ask for its values.
+void ExposureMeter::release_world() {
+  probe_.reset();
+  solver_.reset();
+  shared_.reset();
 }
 
 bool ExposureMeter::goes_on_in(const CompiledWorld& world) const {
@@ -157,24 +165,38 @@ double ExposureMeter::ev100_at(int64_t step) {
 
 Status ExposureMeters::open(const StreamContext& context) {
   const std::shared_ptr<const CompiledWorld> world = context.simulator.world();
-  ByCamera meters;
+  ByCamera before, meters;
+  {
+    const std::lock_guard lock(mutex_);
+    if (!worlds_.empty()) before = worlds_.back().meters;
+  }
   for (const CameraOptions& camera : world->scene.cameras) {
     if (!is_metered(camera)) continue;
     std::shared_ptr<ExposureMeter>& meter = meters[camera.name];
-    meter = of(camera.name, *world);
-    if (meter != nullptr) continue;
-    GLOAM_TRY(meter, ExposureMeter::open(context, camera, required_));
+    const auto found = before.find(camera.name);
+    if (found != before.end() && found->second->goes_on_in(*world)) {
+      meter = found->second;
+    } else {
+      GLOAM_TRY(meter, ExposureMeter::open(context, camera, required_));
+    }
   }
   const std::lock_guard lock(mutex_);
-  meters_.swap(meters);
+  std::erase_if(worlds_, [&](const OfWorld& entry) {
+    return entry.world.expired() || entry.world.lock() == world;
+  });
+  worlds_.push_back({world, std::move(meters)});
   return {};
 }
 
 std::shared_ptr<ExposureMeter> ExposureMeters::of(const std::string& camera,
                                                   const CompiledWorld& world) const {
   const std::lock_guard lock(mutex_);
-  const auto found = meters_.find(camera);
-  return found != meters_.end() && found->second->goes_on_in(world) ? found->second : nullptr;
+  for (const OfWorld& entry : worlds_) {
+    if (entry.world.lock().get() != &world) continue;
+    const auto found = entry.meters.find(camera);
+    if (found != entry.meters.end()) return found->second;
+  }
+  return nullptr;
 }
 
 }  // namespace gloam

@@ -6,6 +6,7 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <vector>
 
 #include "runtime/rendering/shared_renderer.h"
 #include "runtime/streams/stream_context.h"
@@ -47,6 +48,7 @@ class ExposureMeter {
   Status follow(const std::shared_ptr<const CompiledWorld>& world);
   Status take(const Snapshot& snapshot);
   Status meter(const Snapshot& snapshot);
+  void release_world();
   // The last step of the schedule that is not after `step`, or its first.
   int64_t instant_of(int64_t step) const;
 
@@ -76,15 +78,20 @@ class ExposureMeters {
   explicit ExposureMeters(bool required) : required_(required) {}
   /// Opens those of the World that runs; what goes on in it stays open.
   Status open(const StreamContext& context);
-  /// Meter of a camera in `world`; null where it has none, or is not open yet.
+  /// Meter of a camera in `world`, which may be an earlier one whose pictures are still being made;
+  /// null where it has none, or is not open yet.
   std::shared_ptr<ExposureMeter> of(const std::string& camera, const CompiledWorld& world) const;
 
  private:
   using ByCamera = std::map<std::string, std::shared_ptr<ExposureMeter>>;
+  struct OfWorld {
+    std::weak_ptr<const CompiledWorld> world;
+    ByCamera meters;
+  };
 
   const bool required_;
   mutable std::mutex mutex_;
-  ByCamera meters_;
+  std::vector<OfWorld> worlds_;  // that still exist; the one that runs is the last
 };
 
 }  // namespace gloam
