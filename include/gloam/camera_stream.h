@@ -10,6 +10,7 @@
 
 #include "gloam/camera.h"
 #include "gloam/scene.h"
+#include "gloam/snapshot.h"
 #include "gloam/stream.h"
 
 namespace gloam {
@@ -38,6 +39,8 @@ class CameraStream : public Stream {
   virtual Pose pose() const = 0;
   /// Renders the latest Snapshot again, also while the simulation is paused.
   virtual void refresh() = 0;
+  /// Renders this Snapshot of the World that runs instead, once.
+  virtual void show(const Snapshot& snapshot) = 0;
 };
 using FrameCallback = std::function<void(std::shared_ptr<const CameraFrame>)>;
 

@@ -4,7 +4,9 @@
 #include <cstdint>
 #include <memory>
 #include <utility>
+#include <vector>
 
+#include "gloam/command.h"
 #include "gloam/world.h"
 
 namespace gloam {
@@ -21,6 +23,8 @@ class Checkpoint {
   uint64_t seed() const;  ///< seed of the run
   uint64_t hash() const;  ///< hash of the state; a restored simulation has the same hash
   World world() const;    ///< World that was running
+  /// Posted Commands that have led here from step 0, each with the step at which it applied.
+  const std::vector<Command>& commands() const;
   /// Whether restore() copies the state. Otherwise (with effects, agents, or controllers without
   /// Controller::clone()) it steps the run again from its beginning, as fast as possible.
   bool is_copied() const;

@@ -67,6 +67,18 @@ struct DragBody {
   Vec3 target_W;
   bool active = true;
 };
+/// Rotates a body towards an orientation like a spring (MuJoCo's perturbation), until `active` is
+/// false.
+struct TurnBody {
+  Body body;
+  Quat target_WB;
+  bool active = true;
+};
+/// Switches an equality constraint on or off.
+struct SetEquality {
+  Equality equality;
+  bool active = true;
+};
 /// Returns to the initial state; step and time restart at zero.
 struct ResetSim {};
 
@@ -117,7 +129,7 @@ struct Command {
   int64_t step = kNextStep;  ///< applies before this step
   std::variant<SetControl, SetVelocityGoal, SetMocapPose, SetWrench, AddVelocity, DragBody,
                ResetSim, SetLiveField, SetJointState, SetControls, SetJointGoal, SetJointCommand,
-               SetController, FollowTrajectory, StopTrajectory, SetPoseGoal>
+               SetController, FollowTrajectory, StopTrajectory, SetPoseGoal, TurnBody, SetEquality>
       what;
 };
 

@@ -20,6 +20,7 @@ using SensorHandle = Handle<struct SensorHandleKind>;
 using Camera = Handle<struct CameraKind>;
 using Geom = Handle<struct GeomKind>;
 using Tendon = Handle<struct TendonKind>;
+using Equality = Handle<struct EqualityKind>;
 using Robot = Handle<struct RobotKind>;  ///< id: index in World::robots()
 
 }  // namespace gloam

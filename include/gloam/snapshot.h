@@ -18,6 +18,7 @@ struct mjData_;
 
 namespace gloam {
 
+struct Command;       // gloam/command.h
 struct SnapshotData;  // src/sim/snapshots/snapshot.h
 
 /// State of one joint in one Snapshot. The spans are valid as long as the Snapshot.
@@ -64,6 +65,11 @@ class Snapshot {
 
   World world() const;  ///< World of this instant; a recompile replaces it
 
+  /// The same instant after these Commands, for views of a paused simulation: positions,
+  /// velocities, controls, mocap poses and equality constraints; other Commands have no effect
+  /// before a step. Sensor values stay. Error: a Command that Simulation::post() rejects.
+  Result<Snapshot> with(std::span<const Command> commands) const;
+
   const SnapshotData& data() const { return *data_; }
 
  private:
@@ -88,6 +94,7 @@ struct ContactState {
   Vec3 normal;          ///< unit, from the first geom to the second
   Vec3 tangents[2];     ///< complete the frame
   double distance = 0;  ///< distance between the surfaces; negative = they overlap [m]
+  double friction = 0;  ///< coefficient of sliding friction
   Vec3 force, torque;   ///< on the second geom, world axes [N], [N m]
 };
 

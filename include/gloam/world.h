@@ -94,6 +94,7 @@ class World {
   Result<Camera> find_camera(const std::string& name) const;
   Result<Geom> find_geom(const std::string& name) const;
   Result<Tendon> find_tendon(const std::string& name) const;
+  Result<Equality> find_equality(const std::string& name) const;
   Result<Robot> find_robot(const std::string& name) const;
 
   const Scene& scene() const;  ///< source of the World, including all elements added by generators
@@ -119,6 +120,11 @@ class World {
                             std::span<const Pose> mocap = {}) const;
 
   WorldInfo info() const;
+  /// Names of all elements of one of MuJoCo's types ("body", "geom", "equality" …), in MuJoCo's
+  /// order; "" where the model gives none. Error: no such type.
+  Result<std::vector<std::string>> names(const std::string& type) const;
+  /// Number that no other World of this process has; handles remember it.
+  uint64_t serial() const;
   /// Suspicious but accepted properties of the scene, with their locations: open meshes, sizes that
   /// suggest another unit, renamed nodes, robots and loose objects that start inside others. The
   /// last check takes one pass of MuJoCo's collision detection.

@@ -193,6 +193,31 @@ Result<Geom> World::find_geom(const std::string& name) const {
 Result<Tendon> World::find_tendon(const std::string& name) const {
   return find<Tendon>(*compiled_, mjOBJ_TENDON, &mjModel::ntendon, "tendon", name);
 }
+Result<Equality> World::find_equality(const std::string& name) const {
+  return find<Equality>(*compiled_, mjOBJ_EQUALITY, &mjModel::neq, "equality constraint", name);
+}
+
+uint64_t World::serial() const { return compiled_->serial; }
+
+Result<std::vector<std::string>> World::names(const std::string& type) const {
+  using Counts = std::pair<mjtObj, mjtSize mjModel::*>;
+  static constexpr Counts kCounts[] = {
+      {mjOBJ_BODY, &mjModel::nbody},         {mjOBJ_JOINT, &mjModel::njnt},
+      {mjOBJ_GEOM, &mjModel::ngeom},         {mjOBJ_SITE, &mjModel::nsite},
+      {mjOBJ_CAMERA, &mjModel::ncam},        {mjOBJ_LIGHT, &mjModel::nlight},
+      {mjOBJ_FLEX, &mjModel::nflex},         {mjOBJ_MESH, &mjModel::nmesh},
+      {mjOBJ_SKIN, &mjModel::nskin},         {mjOBJ_HFIELD, &mjModel::nhfield},
+      {mjOBJ_TEXTURE, &mjModel::ntex},       {mjOBJ_MATERIAL, &mjModel::nmat},
+      {mjOBJ_PAIR, &mjModel::npair},         {mjOBJ_EXCLUDE, &mjModel::nexclude},
+      {mjOBJ_EQUALITY, &mjModel::neq},       {mjOBJ_TENDON, &mjModel::ntendon},
+      {mjOBJ_ACTUATOR, &mjModel::nactuator}, {mjOBJ_SENSOR, &mjModel::nsensor},
+      {mjOBJ_KEY, &mjModel::nkey},           {mjOBJ_PLUGIN, &mjModel::nplugin}};
+  const int wanted = mju_str2Type(type.c_str());
+  const mjModel* m = compiled_->model.get();
+  for (const auto& [kind, count] : kCounts)
+    if (kind == wanted) return object_names(m, kind, static_cast<int>(m->*count));
+  return Error{ErrorKind::kUsage, fmt::format("MuJoCo has no elements of type '{}'", type)};
+}
 
 WorldInfo World::info() const {
   const mjModel* m = compiled_->model.get();

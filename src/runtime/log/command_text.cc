@@ -46,6 +46,7 @@ class Writer {
   void value(const char* key, const Pose& X) {
     json_[key] = {{"p", numbers(X.p)}, {"q", {X.q.w, X.q.x, X.q.y, X.q.z}}};
   }
+  void value(const char* key, const Quat& q) { json_[key] = {q.w, q.x, q.y, q.z}; }
   void value(const char* key, const LiveFieldId& v) { json_[key] = live_field_name(v); }
   void value(const char* key, const ControllerOptions& v) { json_[key] = to_toml(v); }
   void value(const char* key, const TrajectoryProfile& v) { json_[key] = profile_name(v); }
@@ -87,6 +88,10 @@ class Reader {
   void value(const char* key, Pose& X) {
     const Json &pose = json_.at(key), &q = pose.at("q");
     X = {vec3(pose.at("p")), {q.at(0), q.at(1), q.at(2), q.at(3)}};
+  }
+  void value(const char* key, Quat& v) {
+    const Json& q = json_.at(key);
+    v = {q.at(0), q.at(1), q.at(2), q.at(3)};
   }
   void value(const char* key, LiveFieldId& v) {
     const auto name = json_.at(key).get<std::string>();
@@ -204,12 +209,23 @@ void visit(V& v, auto& c, const StopTrajectory*) {
   v.handle("robot", c.robot, mjOBJ_UNKNOWN), v.added("joints", c.joints);
 }
 
+template <class V>
+void visit(V& v, auto& c, const TurnBody*) {
+  v.handle("body", c.body, mjOBJ_BODY), v.value("target", c.target_WB);
+  v.value("active", c.active);
+}
+template <class V>
+void visit(V& v, auto& c, const SetEquality*) {
+  v.handle("equality", c.equality, mjOBJ_EQUALITY), v.value("active", c.active);
+}
+
 using What = decltype(Command::what);
-constexpr const char* kNames[] = {
-    "set_control",     "set_velocity_goal", "set_mocap_pose",  "set_wrench",
-    "add_velocity",    "drag_body",         "reset",           "set_live_field",
-    "set_joint_state", "set_controls",      "set_joint_goal",  "set_joint_command",
-    "set_controller",  "follow_trajectory", "stop_trajectory", "set_pose_goal"};
+constexpr const char* kNames[] = {"set_control",    "set_velocity_goal", "set_mocap_pose",
+                                  "set_wrench",     "add_velocity",      "drag_body",
+                                  "reset",          "set_live_field",    "set_joint_state",
+                                  "set_controls",   "set_joint_goal",    "set_joint_command",
+                                  "set_controller", "follow_trajectory", "stop_trajectory",
+                                  "set_pose_goal",  "turn_body",         "set_equality"};
 static_assert(std::size(kNames) == std::variant_size_v<What>);
 
 template <size_t I = 0>

@@ -123,6 +123,19 @@ void LiveCamera::refresh() {
   queue_->wake();
 }
 
+void LiveCamera::show(const Snapshot& snapshot) {
+  {
+    const std::lock_guard lock(mutex_);
+    shown_ = snapshot;
+  }
+  refresh();
+}
+
+Snapshot LiveCamera::take_shown() {
+  const std::lock_guard lock(mutex_);
+  return std::exchange(shown_, {});
+}
+
 SnapshotWindow LiveCamera::next_window() {
   if (request_.required) return queue_->next_window();
   for (;;) {
@@ -130,7 +143,8 @@ SnapshotWindow LiveCamera::next_window() {
     if (queue_->closed()) return {};
     if (refresh_wanted_.exchange(false)) {  // an instant: nothing moves
       SnapshotWindow window;
-      window.add(simulator_.latest());
+      const Snapshot shown = take_shown();
+      window.add(shown ? shown : simulator_.latest());
       queue_->count_own();
       return window;
     }

@@ -32,6 +32,7 @@ class LiveCamera final : public CameraStream {
   void set_pose(const Pose& X_WC) override;
   Pose pose() const override;
   void refresh() override;
+  void show(const Snapshot& snapshot) override;
   /// Other outputs from the next picture on, by their names; exposure and schedule go on. Outputs
   /// that need another schedule end the stream. Any thread.
   void set_outputs(std::vector<std::string> outputs);
@@ -59,6 +60,7 @@ class LiveCamera final : public CameraStream {
              const ExposureMeters& meters);
   Status follow(const std::shared_ptr<const CompiledWorld>& world);
   SnapshotWindow next_window();
+  Snapshot take_shown();
   bool take_outputs();
   Status take(const SnapshotWindow& window);
   Status capture(const SnapshotWindow& window);
@@ -81,8 +83,9 @@ class LiveCamera final : public CameraStream {
   PoseFrame previous_;           ///< the first of the window before
   bool has_previous_ = false;
   bool previous_is_still_ = false;  ///< it was an instant by itself, not a window
-  mutable std::mutex mutex_;        // guards sensor_ against set_pose() and pose(), and the wish
+  mutable std::mutex mutex_;        // guards sensor_ against set_pose() and pose(), and wishes
   std::optional<std::vector<std::string>> wanted_outputs_;  // instead of the present ones
+  Snapshot shown_;  // to be rendered at the next refresh; empty = the latest
   std::atomic<bool> refresh_wanted_{false};
   std::atomic<double> part_{0};  // of the picture that is being made, 0 … 1
   StreamThread thread_;          // last: it uses the others

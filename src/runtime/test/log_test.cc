@@ -338,7 +338,9 @@ TEST_F(Logs, CommandsAreReadBackToTheBit) {
                        {TrajectoryProfile::kQuintic, {{0, {0.1}}, {0, {0.2}}}, {1.0 / 3}, {2}},
                        -7'000'000'000'000'000'001},
       StopTrajectory{{0, serial}, {{1, serial}}},
-      SetPoseGoal{{0, serial}, {{0.1, 0.2, 0.3}, {0, 0.6, 0.8, 0}}}};
+      SetPoseGoal{{0, serial}, {{0.1, 0.2, 0.3}, {0, 0.6, 0.8, 0}}},
+      TurnBody{{1, serial}, {0.5, 0.5, -0.5, 0.5}, false},
+      SetEquality{{0, serial}, false}};
   ASSERT_EQ(all.size(), std::variant_size_v<decltype(Command::what)>);
   for (const auto& what : all) {
     const std::string text = command_text({2, {17, what}}, compiled);

@@ -14,6 +14,7 @@ AppliedInputs::AppliedInputs(const CompiledWorld& world, const mjModel& model)
       solved_(static_cast<size_t>(3 * model.nv)),
       joints_(world, model) {
   drags_.reserve(static_cast<size_t>(model.nbody));
+  turns_.reserve(static_cast<size_t>(model.nbody));
   for (const RobotInstance& robot : world.robots) {
     std::vector<int>& controls = controls_.emplace_back();
     for (const int actuator : robot_actuators(model, robot))
@@ -31,6 +32,11 @@ void AppliedInputs::take_over(const AppliedInputs& before, const Correspondence&
       drag.body = static_cast<int>(body);
       drags_.push_back(drag);
     }
+    for (Turn turn : before.turns_) {
+      if (turn.body != old) continue;
+      turn.body = static_cast<int>(body);
+      turns_.push_back(turn);
+    }
   }
   joints_.take_over(before.joints_, same);
 }
@@ -38,6 +44,7 @@ void AppliedInputs::take_over(const AppliedInputs& before, const Correspondence&
 void AppliedInputs::reset() {
   std::fill(wrench_.begin(), wrench_.end(), 0.0);
   drags_.clear();
+  turns_.clear();
   joints_.reset();
 }
 
@@ -85,13 +92,16 @@ void AppliedInputs::apply(const mjModel& model, mjData& data, const AddVelocity&
   v[2] += command.velocity.z;
 }
 
+void AppliedInputs::set_base_wrench(mjData& data, int body) const {
+  mju_copy(data.xfrc_applied + 6 * body, wrench_.data() + 6 * body, 6);
+}
+
 void AppliedInputs::apply(const mjModel&, mjData& data, const DragBody& command) {
   const int body = command.body.id;
-  auto drag =
-      std::find_if(drags_.begin(), drags_.end(), [body](const Drag& d) { return d.body == body; });
+  auto drag = std::ranges::find(drags_, body, &Drag::body);
   if (!command.active) {
     if (drag == drags_.end()) return;
-    mju_copy(data.xfrc_applied + 6 * body, wrench_.data() + 6 * body, 6);
+    set_base_wrench(data, body);
     drags_.erase(drag);
     return;
   }
@@ -104,12 +114,48 @@ void AppliedInputs::apply(const mjModel&, mjData& data, const DragBody& command)
   }
 }
 
+void AppliedInputs::apply(const mjModel&, mjData& data, const TurnBody& command) {
+  const int body = command.body.id;
+  auto turn = std::ranges::find(turns_, body, &Turn::body);
+  if (!command.active) {
+    if (turn == turns_.end()) return;
+    set_base_wrench(data, body);
+    turns_.erase(turn);
+    return;
+  }
+  const Quat& q = command.target_WB;
+  Turn next{body, {q.w, q.x, q.y, q.z}, 0};
+  mju_normalize4(next.target_WB);
+  if (turn == turns_.end()) {
+    turns_.push_back(next);
+  } else {
+    *turn = next;
+  }
+}
+
+void AppliedInputs::apply(const mjModel&, mjData& data, const SetEquality& command) {
+  data.eq_active[command.equality.id] = command.active;
+}
+
 void AppliedInputs::before_step(const mjModel& model, mjData& data) {
-  if (drags_.empty()) return;
+  if (drags_.empty() && turns_.empty()) return;
   // The poses in mjData are those before the last step; the spring needs those of now.
   mj_kinematics(&model, &data);
   mj_comPos(&model, &data);
+  for (const Drag& drag : drags_) set_base_wrench(data, drag.body);
+  for (const Turn& turn : turns_) set_base_wrench(data, turn.body);
   for (Drag& drag : drags_) pull(model, data, drag);
+  for (Turn& turn : turns_) this->turn(model, data, turn);
+}
+
+// Inverse of the mean acceleration that a unit of force, or of torque, causes along the rows of
+// jacobian_.
+double AppliedInputs::mean_inertia(const mjModel& model, mjData& data) {
+  mj_makeM(&model, &data);
+  mj_factorM(&model, &data);
+  mj_solveM(&model, &data, solved_.data(), jacobian_.data(), 3);
+  const int size = 3 * static_cast<int>(model.nv);
+  return 1 / std::max(mju_dot(solved_.data(), jacobian_.data(), size) / 3, mjMINVAL);
 }
 
 // A critically damped spring of the model's perturbation stiffness per unit of mass
@@ -120,13 +166,7 @@ void AppliedInputs::pull(const mjModel& model, mjData& data, Drag& drag) {
   mju_addTo3(point_W, data.xpos + 3 * drag.body);
   const int nv = static_cast<int>(model.nv);
   mj_jac(&model, &data, jacobian_.data(), nullptr, point_W, drag.body);
-  if (drag.mass == 0) {
-    mj_makeM(&model, &data);
-    mj_factorM(&model, &data);
-    mj_solveM(&model, &data, solved_.data(), jacobian_.data(), 3);
-    const double inverse_mass = mju_dot(solved_.data(), jacobian_.data(), 3 * nv) / 3;
-    drag.mass = 1 / std::max(inverse_mass, mjMINVAL);
-  }
+  if (drag.mass == 0) drag.mass = mean_inertia(model, data);
   double velocity[3];
   mju_mulMatVec(velocity, jacobian_.data(), data.qvel, 3, nv);
 
@@ -139,9 +179,24 @@ void AppliedInputs::pull(const mjModel& model, mjData& data, Drag& drag) {
   mju_sub3(arm, point_W, data.xipos + 3 * drag.body);
   mju_cross(torque, arm, force);
   double* wrench = data.xfrc_applied + 6 * drag.body;
-  mju_copy(wrench, wrench_.data() + 6 * drag.body, 6);
   mju_addTo3(wrench, force);
   mju_addTo3(wrench + 3, torque);
+}
+
+// The same for the orientation (visual/map/stiffnessrot [1/s²]).
+void AppliedInputs::turn(const mjModel& model, mjData& data, Turn& turn) {
+  const int nv = static_cast<int>(model.nv);
+  mj_jac(&model, &data, nullptr, jacobian_.data(), data.xpos + 3 * turn.body, turn.body);
+  if (turn.inertia == 0) turn.inertia = mean_inertia(model, data);
+  double inverse[4], difference[4], error[3], velocity[3];
+  mju_negQuat(inverse, data.xquat + 4 * turn.body);
+  mju_mulQuat(difference, turn.target_WB, inverse);
+  mju_quat2Vel(error, difference, 1);
+  mju_mulMatVec(velocity, jacobian_.data(), data.qvel, 3, nv);
+  const double stiffness = model.vis.map.stiffnessrot;
+  double* torque = data.xfrc_applied + 6 * turn.body + 3;
+  for (int i = 0; i < 3; ++i)
+    torque[i] += turn.inertia * (stiffness * error[i] - 2 * std::sqrt(stiffness) * velocity[i]);
 }
 
 }  // namespace gloam

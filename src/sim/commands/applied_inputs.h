@@ -29,6 +29,8 @@ class AppliedInputs {
   void apply(const mjModel& model, mjData& data, const SetWrench& command);
   void apply(const mjModel& model, mjData& data, const AddVelocity& command);
   void apply(const mjModel& model, mjData& data, const DragBody& command);
+  void apply(const mjModel& model, mjData& data, const TurnBody& command);
+  void apply(const mjModel& model, mjData& data, const SetEquality& command);
   void apply(const mjModel&, mjData&, const SetJointGoal& command) { joints_.apply(command); }
   void apply(const mjModel&, mjData&, const SetJointCommand& command) { joints_.apply(command); }
   void apply(const mjModel& model, mjData& data, const StopTrajectory& command) {
@@ -38,7 +40,7 @@ class AppliedInputs {
   JointInputs& joints() { return joints_; }
   const JointInputs& joints() const { return joints_; }
 
-  /// Pulls dragged bodies; call before every step. MuJoCo errors possible: call it guarded.
+  /// Pulls and turns dragged bodies; call before every step. MuJoCo errors possible: call it guarded.
   void before_step(const mjModel& model, mjData& data);
 
  private:
@@ -48,11 +50,20 @@ class AppliedInputs {
     double
         mass;  // effective inertia at the point, the mean over directions [kg]; 0 = not yet known
   };
+  struct Turn {
+    int body;
+    double target_WB[4];
+    double inertia;  // effective, the mean over axes [kg m²]; 0 = not yet known
+  };
   void pull(const mjModel& model, mjData& data, Drag& drag);
+  void turn(const mjModel& model, mjData& data, Turn& turn);
+  double mean_inertia(const mjModel& model, mjData& data);
+  void set_base_wrench(mjData& data, int body) const;
 
   std::vector<std::vector<int>> controls_;  // indices of controls, by robot
   std::vector<double> wrench_;              // by SetWrench: force, torque [N, N m], (nbody x 6)
   std::vector<Drag> drags_;                 // at most one per body
+  std::vector<Turn> turns_;                 // at most one per body
   std::vector<double> jacobian_, solved_;   // (3 x nv) each
   JointInputs joints_;
 };

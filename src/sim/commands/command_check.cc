@@ -191,6 +191,19 @@ class Check {
     }
     return {};
   }
+  Status operator()(const TurnBody& c) const {
+    if (Status status = check_body(c.body); !status) return status;
+    const Quat& q = c.target_WB;
+    const double norm = q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z;
+    if (!std::isfinite(norm) || norm < 1e-12)
+      return refuse("the orientation to turn to is not finite, or its quaternion is zero");
+    if (c.active && !can_move(model_, c.body.id))
+      return refuse(fmt::format("{} cannot move", body_label(model_, c.body.id)));
+    return {};
+  }
+  Status operator()(const SetEquality& c) const {
+    return check_handle(c.equality, "equality constraint", 0, model_.neq);
+  }
   Status operator()(const ResetSim&) const { return {}; }
   Status operator()(const SetLiveField& c) const { return check_live_field(model_, c); }
 

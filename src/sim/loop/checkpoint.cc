@@ -7,6 +7,7 @@ double Checkpoint::time() const { return data_->time; }
 uint64_t Checkpoint::seed() const { return data_->record.seed; }
 uint64_t Checkpoint::hash() const { return data_->record.hash; }
 World Checkpoint::world() const { return World(data_->record.chapters.back().world); }
+const std::vector<Command>& Checkpoint::commands() const { return data_->record.commands; }
 bool Checkpoint::is_copied() const { return data_->copy != nullptr; }
 
 }  // namespace gloam

@@ -215,6 +215,7 @@ void Instant::contacts(std::vector<ContactState>* contacts) const {
     contact.tangents[0] = vec3(from.frame + 3);
     contact.tangents[1] = vec3(from.frame + 6);
     contact.distance = from.dist;
+    contact.friction = from.friction[0];
     contact.force = vec3(force);
     contact.torque = vec3(torque);
     contacts->push_back(contact);

@@ -9,6 +9,8 @@
 #include "base/hash.h"
 #include "base/memory.h"
 #include "scene/files/mujoco_guard.h"
+#include "sim/commands/applied_inputs.h"
+#include "sim/commands/command_check.h"
 #include "sim/loop/step_schedule.h"
 #include "sim/snapshots/snapshot.h"
 #include "sim/state/initial_state.h"
@@ -63,7 +65,38 @@ void set_mocap(std::span<const Pose> mocap, mjData* data) {
   }
 }
 
+// The Commands whose effect is in mjData at once.
+void apply_to(const mjModel& model, mjData* data, AppliedInputs* inputs, const Command& command) {
+  std::visit(
+      [&]<class T>(const T& what) {
+        if constexpr (std::is_same_v<T, SetControl> || std::is_same_v<T, SetControls> ||
+                      std::is_same_v<T, SetJointState> || std::is_same_v<T, SetMocapPose> ||
+                      std::is_same_v<T, SetEquality> || std::is_same_v<T, AddVelocity>)
+          inputs->apply(model, *data, what);
+      },
+      command.what);
+}
+
 }  // namespace
+
+Result<Snapshot> Snapshot::with(std::span<const Command> commands) const {
+  const CompiledWorld& world = *data_->world;
+  const mjModel& model = *world.model;
+  for (const Command& command : commands) GLOAM_TRY_STATUS(check_command(world, command));
+  return or_no_memory("the snapshot", [&]() -> Result<Snapshot> {
+    const DataPtr memory = make_data(model);
+    mjData* data = memory.get();
+    AppliedInputs inputs(world, model);
+    const auto out = std::make_shared<SnapshotData>(*data_);
+    GLOAM_TRY_STATUS(guarded([&, state = out->state.data()] {
+      mj_setState(&model, data, state, mjSTATE_INTEGRATION);
+      for (const Command& command : commands) apply_to(model, data, &inputs, command);
+      mj_getState(&model, data, state, mjSTATE_INTEGRATION);
+    }));
+    out->run = next_run();
+    return Snapshot(out);
+  });
+}
 
 Result<Snapshot> World::snapshot(std::span<const double> qpos, double time,
                                  std::span<const Pose> mocap) const {

@@ -236,6 +236,8 @@ std::optional<Command> Correspondence::translate(const Command& command) const {
               std::search(places.begin(), places.end(), wanted.begin(), wanted.end());
           what.first = static_cast<int>(found - places.begin());
           return found != places.end();
+        } else if constexpr (std::is_same_v<T, SetEquality>) {
+          return follow(what.equality, equality);
         } else if constexpr (std::is_same_v<T, ResetSim>) {
           return true;
         } else {

@@ -111,6 +111,70 @@ TEST_F(CommandTest, DragOffCentreTurnsTheBody) {
   EXPECT_LT(sim->latest()[Joint{1}].qvel[5], -1e-3);  // pulled along +x at +y: turns clockwise
 }
 
+TEST_F(CommandTest, TurnRotatesABodyToItsTargetAndLetsGo) {
+  const double half = std::sqrt(0.5);
+  ASSERT_TRUE(sim->post({.what = TurnBody{body("float"), {half, 0, 0, half}}}).ok());
+  sim->start();
+  ASSERT_TRUE(sim->step(300).ok());
+  const Snapshot turned = sim->latest();
+  EXPECT_NEAR(turned[Joint{1}].qpos[3], half, 1e-3);
+  EXPECT_NEAR(turned[Joint{1}].qpos[6], half, 1e-3);
+  EXPECT_NEAR(turned[Joint{1}].qpos[1], 3, 1e-2) << "it stays where it is";
+  ASSERT_TRUE(sim->post({.what = TurnBody{body("float"), {1, 0, 0, 0}, false}}).ok());
+  ASSERT_TRUE(sim->step(100).ok());
+  EXPECT_NEAR(sim->latest()[Joint{1}].qpos[6], half, 1e-2) << "nothing turns it back";
+}
+
+TEST_F(CommandTest, TurnsThatDoNotFitAreRefused) {
+  EXPECT_FALSE(sim->post({.what = TurnBody{body("float"), {0, 0, 0, 0}}}).ok());
+  EXPECT_FALSE(sim->post({.what = TurnBody{body("float"), {NAN, 0, 0, 0}}}).ok());
+  EXPECT_FALSE(sim->post({.what = TurnBody{body("hand"), {1, 0, 0, 0}}}).ok()) << "cannot move";
+  EXPECT_FALSE(sim->post({.what = TurnBody{Body{99}, {1, 0, 0, 0}}}).ok());
+  EXPECT_FALSE(sim->post({.what = SetEquality{Equality{0}, true}}).ok()) << "there is none";
+}
+
+TEST(Equality, IsSwitchedAndItsStateIsPartOfTheSnapshot) {
+  const auto world = world_from_mjcf(R"(<mujoco><option gravity="0 0 0"/><worldbody>
+    <body><joint name="a" type="slide"/><geom size=".1"/></body>
+    <body pos="1 0 0"><joint name="b" type="slide"/><geom size=".1"/></body></worldbody>
+    <equality><joint name="together" joint1="a" joint2="b"/></equality></mujoco>)");
+  const auto sim = make_simulator(world, lockstep());
+  const Equality together = *World(world).find_equality("together");
+  sim->start();
+  const auto distance = [&] {
+    return sim->latest()[Joint{0}].position() - sim->latest()[Joint{1}].position();
+  };
+  ASSERT_TRUE(sim->post({.what = SetEquality{together, false}}).ok());
+  ASSERT_TRUE(sim->post({.what = SetJointState{Joint{0}, {0.5}, {}}}).ok());
+  ASSERT_TRUE(sim->step(200).ok());
+  EXPECT_NEAR(distance(), 0.5, 1e-9) << "it is off";
+  Instant instant;
+  ASSERT_TRUE(instant.solve(sim->latest()).ok());
+  EXPECT_EQ(instant.value("eq_active")->at(0), 0);
+  ASSERT_TRUE(sim->post({.what = SetEquality{together, true}}).ok());
+  ASSERT_TRUE(sim->step(500).ok());
+  EXPECT_NEAR(distance(), 0, 1e-3);
+  EXPECT_FALSE(World(world).find_equality("apart").ok());
+}
+
+TEST_F(CommandTest, ASnapshotWithCommandsIsTheNextStepsBeginning) {
+  sim->start();
+  ASSERT_TRUE(sim->step(5).ok());
+  const std::vector<Command> commands = {{.what = SetJointState{Joint{0}, {0.7}, {2}}},
+                                         {.what = SetControl{Actuator{0}, 3}},
+                                         {.what = SetWrench{body("cart"), {1, 0, 0}, {}}}};
+  const Snapshot before = sim->latest();
+  const Snapshot shown = *before.with(commands);
+  EXPECT_EQ(shown[Joint{0}].position(), 0.7);
+  EXPECT_EQ(shown[Joint{0}].velocity(), 2);
+  EXPECT_EQ(shown.control(Actuator{0}), 3);
+  EXPECT_EQ(shown.step(), 5);
+  EXPECT_EQ(sim->latest()[Joint{0}].position(), before[Joint{0}].position())
+      << "nothing has changed";
+  EXPECT_EQ(sim->latest().hash(), before.hash());
+  EXPECT_FALSE(before.with(std::vector<Command>{{.what = SetJointState{Joint{9}, {1}, {}}}}).ok());
+}
+
 TEST_F(CommandTest, GravityMassAndFrictionChangeWhileItRuns) {
   const mjModel& m = *world->model;
   ASSERT_TRUE(sim->post({5, SetLiveField{LiveFieldId::kGravity, 2, {-4}}}).ok());
