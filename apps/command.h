@@ -22,6 +22,7 @@ using Action = std::function<int()>;
 
 void add_demo(CLI::App& app, Globals& globals, Action& action);
 void add_run(CLI::App& app, Globals& globals, Action& action);
+void add_studio(CLI::App& app, Globals& globals, Action& action);
 void add_record(CLI::App& app, Globals& globals, Action& action);
 void add_replay(CLI::App& app, Globals& globals, Action& action);
 void add_recover(CLI::App& app, Globals& globals, Action& action);

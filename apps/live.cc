@@ -75,13 +75,17 @@ void begin(const LiveRun& run, const LiveCommand& command) {
 }  // namespace
 
 void LiveCommand::add_to(CLI::App& app) {
-  app.add_flag("--view", view, "Serve a live page on this machine instead of recording");
+  app.add_flag("--view", view, "Serve the studio on this machine instead of recording");
+  app.add_flag("--paused", paused, "Live runs: start paused, until a client starts the simulation");
+  add_servers_to(app);
+}
+
+void LiveCommand::add_servers_to(CLI::App& app) {
   for (const BridgeKind& kind : bridge_kinds())
     app.add_flag_callback(
         "--" + kind.name, [this, name = kind.name] { bridges.insert(name); }, kind.help);
-  app.add_flag("--paused", paused, "Live runs: start paused, until a client starts the simulation");
   app.add_option("--port", port,
-                 "Port of the live page, or without --view of the Foxglove server; default: 8080 "
+                 "Port of the studio, or without --view of the Foxglove server; default: 8080 "
                  "or 8765; 0: any free port")
       ->check(CLI::Range(0, 65535));
   app.add_option("--speed", speed,
@@ -118,6 +122,7 @@ Result<LiveParts> start_parts(LiveRun& run, const LiveCommand& command) {
     run.view.pace = run.pace;
     GLOAM_TRY(parts.page, ViewServer::start(simulation, run.view));
     std::fprintf(stderr, "gloam: open %s\n", parts.page->url().c_str());
+    if (run.on_ready) run.on_ready(parts.page->url());
   }
   if (!run.log.file.empty()) {
     run.log.required = false;

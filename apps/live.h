@@ -2,6 +2,7 @@
 // Live runs: a simulation with a page for browsers, bridges to other programs and a log, for
 // commands that keep one.
 
+#include <functional>
 #include <optional>
 #include <set>
 #include <string>
@@ -24,8 +25,10 @@ struct LiveCommand {
   std::string pace = {};  ///< fast | realtime | sensors; "" = the scene's, else the usual one
   bool loop = false;      ///< of a log: it begins again at its end
 
-  /// Adds --view, a flag for each bridge, --paused, --port and --speed.
+  /// Adds --view, --paused and add_servers_to().
   void add_to(CLI::App& command);
+  /// Adds a flag for each bridge, --port, --speed and --pace.
+  void add_servers_to(CLI::App& command);
   /// Whether anything keeps the run alive: a page or a bridge.
   bool any(const BridgeOptions& bridges) const { return view || options(bridges).any(); }
   /// Pace of the command line, else of the scene, else `usual`.
@@ -41,8 +44,9 @@ struct LiveRun {
   BridgeOptions bridges = {};
   Pace pace = Pace::kRealTime;
   std::optional<TeleopOptions> teleop = {};
-  LogRequest log = {};                  ///< no file = none
-  std::optional<double> duration = {};  ///< [s]; empty = until Ctrl-C
+  LogRequest log = {};                                        ///< no file = none
+  std::optional<double> duration = {};                        ///< [s]; empty = until Ctrl-C
+  std::function<void(const std::string& url)> on_ready = {};  ///< called when the page is there
 };
 
 /// Serves it until Ctrl-C, its duration or a client ends it. `starting`: released when all of it is

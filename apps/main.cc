@@ -19,10 +19,10 @@
 namespace gloam::cli {
 namespace {
 
-constexpr std::array kCommands = {add_demo,   add_run,       add_record, add_replay,   add_recover,
-                                  add_render, add_info,      add_export, add_evaluate, add_report,
-                                  add_check,  add_cache,     add_props,  add_robots,   add_convert,
-                                  add_schema, add_completion};
+constexpr std::array kCommands = {add_demo,    add_run,    add_studio,    add_record, add_replay,
+                                  add_recover, add_render, add_info,      add_export, add_evaluate,
+                                  add_report,  add_check,  add_cache,     add_props,  add_robots,
+                                  add_convert, add_schema, add_completion};
 
 /// Checks variables of the environment.
 Status check_environment() {

@@ -1,6 +1,6 @@
 #pragma once
 // The view: a web page on loopback that shows a running Simulation and lets its user pause, step,
-// push bodies and move the camera; and the encoder of its images. docs/view_protocol.md describes
+// push bodies and move the camera; and the encoders of its images. docs/view_protocol.md describes
 // the protocol between page and server.
 
 #include <cstdint>
@@ -60,5 +60,23 @@ class ViewServer {
 /// not have the size of the image, a side is not 1 … 65500 px, no memory.
 Result<std::vector<uint8_t>> encode_jpeg(int width, int height, std::span<const uint8_t> rgb,
                                          int quality = 88);
+
+/// Encodes a sequence of 8-bit sRGB images as H.264, High profile, as a byte stream (ISO/IEC
+/// 14496-10, Annex B) with BT.709 colours: constant quality, no reordering, so that each packet is
+/// one image.
+class VideoEncoder {
+ public:
+  struct Packet {
+    std::vector<uint8_t> bytes;
+    bool is_key = false;  ///< decodable without earlier packets
+  };
+  /// Odd sizes are encoded with the last row or column repeated. `rate`: images per second, about.
+  /// Errors: below 16 x 16 or above 9,437,184 pixels, no memory.
+  static Result<std::unique_ptr<VideoEncoder>> create(int width, int height, double rate);
+  virtual ~VideoEncoder() = default;
+  /// `rgb`: (height x width x 3). `key`: requests a packet that is decodable without earlier ones;
+  /// the first always is. Errors: another size, no memory.
+  virtual Result<Packet> encode(std::span<const uint8_t> rgb, bool key) = 0;
+};
 
 }  // namespace gloam

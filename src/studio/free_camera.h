@@ -38,6 +38,9 @@ class OrbitCamera {
 
   Pose pose() const;  ///< X_WC; looks along -Z
   double distance() const { return distance_; }
+  const Vec3& pivot() const { return pivot_; }
+  /// Moves the pivot and the camera with it.
+  void set_pivot(const Vec3& pivot_W) { pivot_ = pivot_W; }
 
  private:
   Vec3 forward() const;

@@ -1,5 +1,5 @@
 #pragma once
-// The text messages between a page and the server: docs/view_protocol.md.
+// The text messages of a page to the server: docs/view_protocol.md. Replies: replies.h.
 
 #include <cstdint>
 #include <string>
@@ -8,94 +8,131 @@
 #include <vector>
 
 #include "gloam/result.h"
-#include "gloam/types.h"
 
 namespace gloam::studio {
+
+inline constexpr int kMaxStepCount = 100;
+inline constexpr double kMinSpeed = 0.001, kMaxSpeed = 100;
+inline constexpr double kMaxTime = 1e9;  // [s]
+inline constexpr int kPicturesInFlight = 2;
+inline constexpr int kMaxFields = 64;
+inline constexpr double kMinWatchRate = 0.1, kMaxWatchRate = 30;  // per second
 
 struct PauseMessage {};
 struct ResumeMessage {};
 struct StepMessage {
   int count = 1;  ///< 1 … kMaxStepCount
 };
+/// Goes back.
+struct BackMessage {
+  int count = 1;  ///< steps, 1 … kMaxStepCount
+};
 struct SpeedMessage {
   double value = 1;  ///< simulated seconds per wall second, kMinSpeed … kMaxSpeed
 };
 struct ResetMessage {};
-/// Goes to an instant of a log that is played.
+/// Goes to an instant of a log that is played, or of the simulation's recent past.
 struct SeekMessage {
   double time = 0;  ///< [s], 0 … kMaxTime
 };
+
+// State. Elements are given by their index in MuJoCo.
+struct SetJointMessage {
+  int joint = 0;
+  std::vector<double> qpos;
+};
+struct SetControlMessage {
+  int actuator = 0;
+  double value = 0;
+};
+struct ClearControlsMessage {};
+struct SetEqualityMessage {
+  int equality = 0;
+  bool active = true;
+};
+struct LoadKeyframeMessage {
+  int keyframe = 0;
+};
+struct CopyStateMessage {};
+struct PasteStateMessage {
+  std::string text;  ///< a <key> element of MJCF
+};
+struct DriveMessage {
+  int robot = 0;
+  double vx = 0, vy = 0, yaw_rate = 0, vz = 0;  ///< [m/s], [rad/s]
+};
+
+// The camera. Travel of the mouse is in heights of the picture, to the right and down; pixels are
+// of the newest picture, u to the right, v down, as in gloam::Intrinsics.
 struct CameraMessage {
   std::string name;
 };
 /// Turns the free camera about its pivot: 1 = half a turn.
 struct OrbitMessage {
-  double dx = 0, dy = 0;  ///< mouse travel in picture heights, right and down
+  double dx = 0, dy = 0;
 };
 /// Moves the free camera with its pivot, so that the pivot follows the mouse.
 struct PanMessage {
-  double dx = 0, dy = 0;  ///< mouse travel in picture heights, right and down
+  double dx = 0, dy = 0;
 };
 struct ZoomMessage {
   double amount = 0;  ///< > 0 goes closer; the distance is multiplied by exp(-amount)
 };
-/// Pixels of the newest picture, u to the right, v down, as gloam::Intrinsics has them.
+/// Moves the pivot to the point at a pixel.
+struct LookAtMessage {
+  double u = 0, v = 0;
+};
+/// The pivot follows a body.
+struct TrackMessage {
+  int body = -1;  ///< -1 = none
+};
 struct PickMessage {
   double u = 0, v = 0;
 };
 struct DragStartMessage {
   double u = 0, v = 0;
+  bool turn = false;  ///< rotates the body instead of pulling it
 };
 struct DragMoveMessage {
   double u = 0, v = 0;
 };
 struct DragEndMessage {};
+
+// Data of the model and of the present instant.
+struct DescribeMessage {};
+struct GetMessage {
+  int id = 1;
+  std::vector<std::string> fields;
+};
+struct WatchMessage {
+  std::vector<std::string> fields;  ///< none = no longer
+  double rate = 20;                 ///< at most, per second
+};
+
+/// How the client wants its pictures.
+struct CodecMessage {
+  bool is_h264 = false;
+};
 struct ClaimMessage {};
 struct ReleaseMessage {};
 /// The client has shown a picture; the server sends no more than kPicturesInFlight ahead.
 struct SeenMessage {};
 
 using ControlMessage =
-    std::variant<PauseMessage, ResumeMessage, StepMessage, SpeedMessage, ResetMessage, SeekMessage,
-                 CameraMessage, OrbitMessage, PanMessage, ZoomMessage, PickMessage,
-                 DragStartMessage, DragMoveMessage, DragEndMessage, ClaimMessage, ReleaseMessage,
-                 SeenMessage>;
-
-inline constexpr int kMaxStepCount = 100;
-inline constexpr double kMinSpeed = 0.001, kMaxSpeed = 100;
-inline constexpr double kMaxTime = 1e9;  // [s]
-inline constexpr int kPicturesInFlight = 2;
+    std::variant<PauseMessage, ResumeMessage, StepMessage, BackMessage, SpeedMessage, ResetMessage,
+                 SeekMessage, SetJointMessage, SetControlMessage, ClearControlsMessage,
+                 SetEqualityMessage, LoadKeyframeMessage, CopyStateMessage, PasteStateMessage,
+                 DriveMessage, CameraMessage, OrbitMessage, PanMessage, ZoomMessage, LookAtMessage,
+                 TrackMessage, PickMessage, DragStartMessage, DragMoveMessage, DragEndMessage,
+                 DescribeMessage, GetMessage, WatchMessage, CodecMessage, ClaimMessage,
+                 ReleaseMessage, SeenMessage>;
 
 /// Reads one message. Errors: not JSON, unknown type or key, a value missing or out of range.
 Result<ControlMessage> parse_message(std::string_view text);
 
-/// State that every client is told ten times a second.
-struct ViewState {
-  int64_t step = 0;
-  double time = 0;  ///< [s]
-  uint64_t hash = 0;
-  double realtime_factor = 0;
-  bool paused = true;
-  double speed = 1;
-  std::string camera;
-  int64_t dropped = 0;   ///< pictures the renderer has dropped
-  int64_t warnings = 0;  ///< of the physics
-  std::string error;     ///< why the simulation or the picture stopped; empty = all is well
-  int clients = 0;
-  int64_t controller = 0;  ///< client number; 0 = nobody
-};
-
-/// `log_end`: of a log that is played [s], 0 = none is.
-std::string hello_message(int64_t client, const std::vector<std::string>& cameras, double step_rate,
-                          double log_end);
-std::string state_message(const ViewState& state);
-/// Answer to a pick or the start of a drag; `point_W` [m] is where the line of a drag begins.
-std::string picked_message(std::string_view body, const Vec3& point_W, bool dragging);
-/// Answer to a pick that hit nothing.
-std::string picked_nothing_message();
-/// New place of the point that is dragged [m].
-std::string pulled_message(const Vec3& point_W);
-/// Something the user should read.
-std::string notice_message(std::string_view text);
+/// Whether it asks for data of the model or the present instant.
+bool is_about_data(const ControlMessage& message);
+/// Whether a client may send it without being in control.
+bool is_for_watchers(const ControlMessage& message);
 
 }  // namespace gloam::studio

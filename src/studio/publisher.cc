@@ -46,7 +46,7 @@ void Publisher::run() {
   auto next_beat = Clock::now();
   while (!waiting_.has_ended()) {
     if (const auto offer = waiting_.pop_until(next_beat))
-      outputs_.picture(*offer->frame, offer->sequence);
+      outputs_.picture(offer->frame, offer->sequence);
     if (const auto now = Clock::now(); now >= next_beat) {
       next_beat = now + std::chrono::milliseconds(100);
       outputs_.beat();

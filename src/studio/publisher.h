@@ -18,7 +18,7 @@ class Publisher {
  public:
   /// Callbacks, always on its own thread.
   struct Outputs {
-    std::function<void(const CameraFrame&, uint64_t sequence)> picture;
+    std::function<void(std::shared_ptr<const CameraFrame>, uint64_t sequence)> picture;
     std::function<void()> beat;  ///< ten times a second
   };
   explicit Publisher(Outputs outputs);

@@ -10,10 +10,12 @@
 #include "gloam/log_player.h"
 #include "gloam/view.h"
 #include "studio/driver.h"
+#include "studio/inspector.h"
 #include "studio/messages.h"
 #include "studio/page.h"
-#include "studio/picture.h"
+#include "studio/picture_sender.h"
 #include "studio/publisher.h"
+#include "studio/replies.h"
 #include "web/websocket_server.h"
 
 namespace gloam {
@@ -43,14 +45,16 @@ Status check(const ViewOptions& options) {
 }
 
 /// Slots of a client's outbox.
-enum OutboxSlot : size_t { kStateSlot, kPictureSlot };
+enum OutboxSlot : size_t { kStateSlot, kFieldsSlot, kPictureSlot };
+
+constexpr size_t kMaxReplies = size_t{64} << 20;  // bytes that wait for a client that is kept
 
 web::ServerOptions server_options(const ViewOptions& options) {
   return {.host = options.host,
           .port = options.port,
           .methods = "GET, HEAD",
           .max_clients = options.max_clients,
-          .outbox = {.kept_bytes = size_t{64} << 10, .slots = {0, kPicturesInFlight}},
+          .outbox = {.kept_bytes = kMaxReplies, .slots = {0, 0, kPicturesInFlight}},
           .message_bytes = size_t{64} << 10,
           .accepts_binary = false};
 }
@@ -63,17 +67,21 @@ web::Frame text_frame(std::string text) { return {std::move(text), nullptr, true
 ///
 ///     renderer → Publisher (JPEG, state) → clients' outboxes → WebSocketServer
 ///     clients → WebSocketServer → here (access) → Driver → Simulation
+///                                               → Inspector → fields of the model
 class ViewServer::Impl : public web::ServerEvents {
  public:
   Impl(Simulation& simulation, const ViewOptions& options, const std::string& token)
       : simulation_(simulation),
         options_(options),
         token_(token),
-        publisher_({.picture = [this](const CameraFrame& frame,
-                                      uint64_t sequence) { send_picture(frame, sequence); },
-                    .beat = [this] { send_state(); }}),
+        pictures_(kPictureSlot, options.rate),
+        publisher_(
+            {.picture = [this](std::shared_ptr<const CameraFrame> frame,
+                               uint64_t sequence) { send_picture(std::move(frame), sequence); },
+             .beat = [this] { send_state(); }}),
         driver_(simulation, options, publisher_,
                 [this](int64_t client, std::string text) { send(client, std::move(text)); }),
+        inspector_(simulation, inspector_outputs()),
         web_(server_options(options), *this) {}
   ~Impl() override { stop(); }
 
@@ -82,6 +90,7 @@ class ViewServer::Impl : public web::ServerEvents {
     GLOAM_TRY_STATUS(driver_.start());
     simulation_.set_pace(options_.pace, options_.speed);
     publisher_.start();
+    inspector_.start();
     return {};
   }
 
@@ -89,6 +98,7 @@ class ViewServer::Impl : public web::ServerEvents {
   void stop() {
     const std::lock_guard lock(stop_mutex_);
     web_.stop();
+    inspector_.stop();
     driver_.stop();
     publisher_.stop();
   }
@@ -106,14 +116,12 @@ class ViewServer::Impl : public web::ServerEvents {
 
   void on_open(const web::ClientPtr& client) override {
     if (controller_ == 0) controller_ = client->id;
-    client->outbox.send(
-        text_frame(hello_message(client->id, driver_.cameras(), simulation_.step_rate().value(),
-                                 options_.player != nullptr ? options_.player->end() : 0)));
+    client->outbox.send(text_frame(hello_message(greeting(client->id))));
     {
       const std::lock_guard lock(clients_mutex_);
       clients_[client->id] = client;
-      if (picture_ != nullptr) client->outbox.replace(kPictureSlot, {"", picture_});
     }
+    pictures_.add(client);
     driver_.set_clients(client_count());
   }
 
@@ -122,6 +130,8 @@ class ViewServer::Impl : public web::ServerEvents {
       const std::lock_guard lock(clients_mutex_);
       clients_.erase(client->id);
     }
+    pictures_.remove(client->id);
+    inspector_.forget(client->id);
     driver_.set_clients(client_count());
     if (controller_ == client->id) give_up_control();
   }
@@ -134,16 +144,20 @@ class ViewServer::Impl : public web::ServerEvents {
     if (!message.ok()) return notify(message.error().message);
     if (std::holds_alternative<SeenMessage>(*message))
       return client->outbox.acknowledge(kPictureSlot);
+    if (const auto* codec = std::get_if<CodecMessage>(&*message))
+      return pictures_.set_codec(client->id, codec->is_h264 ? Codec::kH264 : Codec::kJpeg);
     if (std::holds_alternative<ClaimMessage>(*message)) {
       if (controller_ == client->id) return;
       give_up_control();
       controller_ = client->id;
       return;
     }
-    if (controller_ != client->id) return notify("You are watching. Take control first.");
+    if (controller_ != client->id && !is_for_watchers(*message))
+      return notify("You are watching. Take control first.");
     if (std::holds_alternative<ReleaseMessage>(*message)) return give_up_control();
-    if (!driver_.post(client->id, *message))
-      notify("The simulation is busy; the request was not executed.");
+    const bool is_taken = is_about_data(*message) ? inspector_.post(client->id, *message)
+                                                  : driver_.post(client->id, *message);
+    if (!is_taken) notify("The simulation is busy; the request was not executed.");
   }
 
  private:
@@ -157,44 +171,74 @@ class ViewServer::Impl : public web::ServerEvents {
     return static_cast<int>(clients_.size());
   }
 
-  void send(int64_t client, std::string text) {
-    const std::lock_guard lock(clients_mutex_);
-    const auto found = clients_.find(client);
-    if (found != clients_.end()) found->second->outbox.send(text_frame(std::move(text)));
+  Greeting greeting(int64_t client) const {
+    const World world = simulation_.world();
+    return {.client = client,
+            .title = world.compiled() == nullptr ? "" : world.scene().name,
+            .cameras = driver_.cameras(),
+            .step_rate = simulation_.step_rate().value(),
+            .log_end = options_.player != nullptr ? options_.player->end() : 0};
   }
 
-  void send_picture(const CameraFrame& frame, uint64_t sequence) {
-    // One image waits for the first client: the next one may take seconds.
-    if (has_picture_ && client_count() == 0) return;
-    has_picture_ = true;
-    const auto& cameras = driver_.cameras();
-    const auto row = std::find(cameras.begin(), cameras.end(), frame.camera) - cameras.begin();
-    auto packet = encode_picture(frame, sequence, static_cast<uint32_t>(row));
+  Inspector::Outputs inspector_outputs() {
+    using Bytes = std::vector<uint8_t>;
+    const auto frame = [](Bytes bytes) {
+      return web::Frame{"", std::make_shared<const Bytes>(std::move(bytes))};
+    };
+    return {.shown = [this] { return driver_.shown(); },
+            .text = [this](int64_t client, std::string text) { send(client, std::move(text)); },
+            .reply =
+                [this, frame](int64_t client, Bytes bytes) {
+                  with_client(client,
+                              [&](web::Outbox& outbox) { outbox.send(frame(std::move(bytes))); });
+                },
+            .watched =
+                [this, frame](int64_t client, Bytes bytes) {
+                  with_client(client, [&](web::Outbox& outbox) {
+                    outbox.replace(kFieldsSlot, frame(std::move(bytes)));
+                  });
+                }};
+  }
+
+  template <class Use>
+  void with_client(int64_t client, Use use) {
     const std::lock_guard lock(clients_mutex_);
-    picture_error_ = packet.ok() ? "" : packet.error().to_string();
-    if (!packet.ok()) return;
-    picture_ = std::make_shared<const std::vector<uint8_t>>(std::move(packet).value());
-    for (const auto& [id, client] : clients_) client->outbox.replace(kPictureSlot, {"", picture_});
+    const auto found = clients_.find(client);
+    if (found != clients_.end()) use(found->second->outbox);
+  }
+
+  void send(int64_t client, std::string text) {
+    with_client(client, [&](web::Outbox& outbox) { outbox.send(text_frame(std::move(text))); });
+  }
+
+  void send_picture(std::shared_ptr<const CameraFrame> frame, uint64_t sequence) {
+    const auto& cameras = driver_.cameras();
+    const auto row = std::find(cameras.begin(), cameras.end(), frame->camera) - cameras.begin();
+    pictures_.send({std::move(frame), sequence, static_cast<uint32_t>(row)});
   }
 
   void send_state() {
     if (client_count() == 0) return;
     const SimulationStats stats = simulation_.stats();
     const Status physics = simulation_.status();
-    const Driver::CameraReport camera = driver_.report();
+    const Driver::Report report = driver_.report();
+    const World world = simulation_.world();
     ViewState state = {.step = stats.step,
                        .time = stats.time,
                        .hash = stats.hash,
                        .realtime_factor = stats.realtime_factor,
                        .paused = simulation_.paused(),
-                       .speed = camera.speed,
-                       .camera = camera.camera,
-                       .dropped = camera.dropped,
+                       .speed = report.speed,
+                       .camera = report.camera.camera,
+                       .dropped = report.camera.dropped,
                        .warnings = stats.warnings,
-                       .error = physics.ok() ? camera.error : physics.error().to_string(),
-                       .controller = controller_};
+                       .error = physics.ok() ? report.camera.error : physics.error().to_string(),
+                       .controller = controller_,
+                       .history_start = report.history_start,
+                       .run = report.returns,
+                       .serial = world.compiled() == nullptr ? 0 : world.serial()};
+    if (state.error.empty()) state.error = pictures_.error();
     const std::lock_guard lock(clients_mutex_);
-    if (state.error.empty()) state.error = picture_error_;
     state.clients = static_cast<int>(clients_.size());
     const web::Frame frame = text_frame(state_message(state));
     for (const auto& [id, client] : clients_) client->outbox.replace(kStateSlot, frame);
@@ -204,14 +248,13 @@ class ViewServer::Impl : public web::ServerEvents {
   const ViewOptions options_;
   const std::string token_;
   std::atomic<int64_t> controller_ = 0;  // written on the network thread, read by the publisher's
-  mutable std::mutex clients_mutex_;     // guards these three
+  mutable std::mutex clients_mutex_;     // guards clients_
   std::map<int64_t, web::ClientPtr> clients_;
-  std::shared_ptr<const std::vector<uint8_t>> picture_;  // the newest, for clients that come later
-  std::string picture_error_;
   std::mutex stop_mutex_;
-  bool has_picture_ = false;  // the publisher's thread only
+  PictureSender pictures_;
   Publisher publisher_;
   Driver driver_;
+  Inspector inspector_;
   web::WebSocketServer web_;
 };
 

@@ -27,11 +27,13 @@ void Outbox::add(Frame frame, bool is_kept) {
   wake_taker();
 }
 
-void Outbox::replace(size_t slot, Frame frame) {
+bool Outbox::replace(size_t slot, Frame frame) {
   const std::lock_guard lock(mutex_);
-  if (closed_ || overflowed_) return;
-  slots_.at(slot).newest = std::move(frame);
+  if (closed_ || overflowed_) return false;
+  const bool is_lost = slots_.at(slot).newest.has_value();
+  slots_[slot].newest = std::move(frame);
   wake_taker();
+  return is_lost;
 }
 
 void Outbox::acknowledge(size_t slot) {

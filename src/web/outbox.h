@@ -47,8 +47,8 @@ class Outbox {
   /// Data: the oldest make room for it.
   void offer(Frame frame);
   /// A frame that replaces the waiting frame of its slot. Slots are sent in their order, after all
-  /// other messages.
-  void replace(size_t slot, Frame frame);
+  /// other messages. Returns whether a frame waited, which is lost.
+  bool replace(size_t slot, Frame frame);
   /// The client has processed a frame of a slot whose number of frames is limited.
   void acknowledge(size_t slot);
   /// The next one; empty: nothing can be sent, and `wake` is called when this changes.

@@ -104,7 +104,7 @@ class Documentation(unittest.TestCase):
                     continue
                 if IN_FULL.match(command) and not os.environ.get("GLOAM_TEST_FULL"):
                     continue
-                serves = "--view" in command.split()
+                serves = "--view" in command.split() or command.startswith("./gloam studio")
                 process = subprocess.Popen(["bash", "-c", "exec " + command if serves else command], cwd=scratch, text=True, env=own,
                                            stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
                 try:

@@ -65,6 +65,7 @@ class FakeSimulation::Stream : public CameraStream {
     const std::lock_guard lock(mutex_);
     return pose_;
   }
+  void show(const Snapshot&) override { refresh(); }
   void refresh() override {
     {
       const std::lock_guard lock(mutex_);

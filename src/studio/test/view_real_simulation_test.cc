@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <cstdlib>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <thread>
@@ -114,6 +115,117 @@ TEST_F(ViewOfARealSimulation, ALogIsGoneAboutIn) {
     EXPECT_NEAR(shown, std::min(time, 0.4), 1e-9);
   }
   (*server)->stop();
+}
+
+/// A page that looks at the tumbling box, paused at its start.
+struct Visit {
+  explicit Visit(const World& world)
+      : simulation(*Simulation::create(world, {})),
+        server(*ViewServer::start(*simulation, {.port = 0, .width = 48, .height = 36})),
+        client(server->port()) {
+    const std::string url = server->url();
+    EXPECT_EQ(
+        client.upgrade("Host: 127.0.0.1:" + std::to_string(server->port()) +
+                       "\r\nAuthorization: token " + url.substr(url.find("token=") + 6) + "\r\n"),
+        101);
+  }
+  /// Values of a field in the next binary message with this id.
+  std::vector<float> field(int id, const std::string& name) {
+    for (int i = 0; i < 500; ++i) {
+      const auto frame = client.read_frame();
+      if (!frame) break;
+      if (frame->opcode != 2) continue;
+      if (frame->payload.substr(0, 4) != "GLF1") {
+        client.send_text(R"({"type":"seen"})");
+        continue;
+      }
+      uint32_t length = 0;
+      std::memcpy(&length, frame->payload.data() + 4, 4);
+      const auto head = nlohmann::json::parse(frame->payload.substr(8, length));
+      size_t at = 8 + length;
+      for (const auto& entry : head["fields"]) {
+        std::vector<float> values(entry["count"].get<size_t>());
+        std::memcpy(values.data(), frame->payload.data() + at, 4 * values.size());
+        if (head["id"] == id && entry["name"] == name) return values;
+        at += 4 * values.size();
+      }
+    }
+    return {};
+  }
+  nlohmann::json state_at_step(int64_t step) {
+    for (int i = 0; i < 200; ++i)
+      if (const auto state = client.wait_for("state"); state && (*state)["step"] == step)
+        return *state;
+    return {};
+  }
+
+  std::unique_ptr<Simulation> simulation;
+  std::unique_ptr<ViewServer> server;
+  RawClient client;
+};
+
+TEST_F(ViewOfARealSimulation, ThePageReadsTheModelAndSetsItsState) {
+  Visit page(compile(folder_ / "model.xml"));
+  page.client.send_text(R"({"type":"describe"})");
+  const auto model = page.client.wait_for("model");
+  ASSERT_TRUE(model);
+  EXPECT_EQ((*model)["bodies"], nlohmann::json::array({"world", "box"}));
+  EXPECT_EQ((*model)["geoms"].size(), 2u);
+  EXPECT_EQ((*model)["serial"], page.simulation->world().serial());
+
+  page.client.send_text(R"({"type":"get","id":3,"fields":["geom_size","nothing"]})");
+  const auto notice = page.client.wait_for("notice");
+  ASSERT_TRUE(notice);
+  EXPECT_NE((*notice)["text"].get<std::string>().find("nothing"), std::string::npos);
+  EXPECT_EQ(page.field(3, "geom_size").size(), 6u);
+
+  // While it is paused, a joint is set without a step.
+  page.client.send_text(R"({"type":"watch","fields":["qpos"],"rate":30})");
+  EXPECT_EQ(page.field(0, "qpos").at(2), 1);
+  page.client.send_text(R"({"type":"set_joint","joint":0,"qpos":[0,0,2.5,1,0,0,0]})");
+  EXPECT_EQ(page.field(0, "qpos").at(2), 2.5);
+  EXPECT_EQ(page.simulation->latest().step(), 0);
+
+  page.client.send_text(R"({"type":"copy_state"})");
+  const auto copied = page.client.wait_for("copied");
+  ASSERT_TRUE(copied);
+  EXPECT_TRUE((*copied)["text"].get<std::string>().starts_with("<key qpos=\"0 0 2.5 1 0 0 0\""));
+  page.server->stop();
+}
+
+TEST_F(ViewOfARealSimulation, ThePageStepsBackToTheSameState) {
+  Visit page(compile(folder_ / "model.xml"));
+  const auto start = page.state_at_step(0);
+  page.client.send_text(R"({"type":"step","count":40})");
+  const auto there = page.state_at_step(40);
+  page.client.send_text(R"({"type":"step","count":30})");
+  ASSERT_FALSE(page.state_at_step(70).is_null());
+  page.client.send_text(R"({"type":"back","count":30})");
+  const auto again = page.state_at_step(40);
+  ASSERT_FALSE(again.is_null());
+  EXPECT_EQ(again["hash"], there["hash"]);
+  EXPECT_EQ(again["history_start"], 0);
+  EXPECT_GT(again["run"], there["run"]);
+  page.client.send_text(R"({"type":"seek","time":0})");
+  EXPECT_EQ(page.state_at_step(0)["hash"], start["hash"]);
+  page.client.send_text(R"({"type":"back","count":1})");
+  const auto notice = page.client.wait_for("notice");
+  ASSERT_TRUE(notice);
+  EXPECT_NE((*notice)["text"].get<std::string>().find("beginning"), std::string::npos);
+  page.server->stop();
+}
+
+TEST_F(ViewOfARealSimulation, AWatchingPageReadsButChangesNothing) {
+  Visit page(compile(folder_ / "model.xml"));
+  ASSERT_TRUE(page.client.wait_for("hello"));
+  page.client.send_text(R"({"type":"release"})");
+  page.client.send_text(R"({"type":"set_joint","joint":0,"qpos":[0,0,2,1,0,0,0]})");
+  const auto notice = page.client.wait_for("notice");
+  ASSERT_TRUE(notice);
+  EXPECT_NE((*notice)["text"].get<std::string>().find("watching"), std::string::npos);
+  page.client.send_text(R"({"type":"get","id":1,"fields":["qpos"]})");
+  EXPECT_EQ(page.field(1, "qpos").at(2), 1);
+  page.server->stop();
 }
 
 TEST_F(ViewOfARealSimulation, WatchingAThirdPartyRobotChangesNothing) {
