@@ -14,6 +14,7 @@ using std::chrono::milliseconds;
 
 constexpr size_t kMaxRequests = 256;
 constexpr milliseconds kTickPeriod{20};
+constexpr milliseconds kReportPause{25};         // between reports after requests, at least
 constexpr milliseconds kCameraCloseDelay{3000};  // longer than the reload of a page takes
 
 /// Adds `next` to the message that waits, if both are moves of one kind. False: it must queue up.
@@ -48,11 +49,11 @@ bool merge(ControlMessage& waiting, const ControlMessage& next) {
 }  // namespace
 
 Driver::Driver(Simulation& simulation, const ViewOptions& options, Publisher& publisher,
-               Reply reply)
+               Outputs outputs)
     : simulation_(simulation),
       options_(options),
       publisher_(publisher),
-      reply_(std::move(reply)),
+      outputs_(std::move(outputs)),
       camera_(simulation, options, publisher),
       edits_(simulation),
       history_(simulation) {}
@@ -122,6 +123,7 @@ void Driver::run() {
   std::unique_lock lock(mutex_);
   while (!stopping_) {
     wake_.wait_for(lock, kTickPeriod, [this] { return stopping_ || !requests_.empty(); });
+    const bool has_requests = !requests_.empty();
     while (!stopping_ && !requests_.empty()) {
       const ControlRequest request = std::move(requests_.front());
       requests_.pop_front();
@@ -131,6 +133,10 @@ void Driver::run() {
     }
     if (stopping_) break;
     lock.unlock();
+    if (has_requests && Clock::now() - reported_at_ > kReportPause) {
+      outputs_.changed();
+      reported_at_ = Clock::now();
+    }
     tick();
     lock.lock();
   }
@@ -220,11 +226,10 @@ void Driver::seek_log(int64_t client, double time) {
 
 void Driver::return_to(int64_t client, int64_t step) {
   if (step >= simulation_.stats().step) return;
-  if (step < 0) return reply_(client, notice_message("This is the beginning of the simulation."));
+  if (step < 0) return reply(client, notice_message("This is the beginning of the simulation."));
   if (history_.repeats_run())
-    reply_(client,
-           notice_message("Repeating the simulation from its beginning, because effects and "
-                          "some controllers cannot be copied …"));
+    reply(client, notice_message("Repeating the simulation from its beginning, because effects and "
+                                 "some controllers cannot be copied …"));
   edits_.forget();
   simulation_.pause();
   simulation_.set_pace(Pace::kFast, 1);
@@ -246,7 +251,7 @@ void Driver::do_message(int64_t client, const ResetMessage&) {
 
 void Driver::edit(int64_t client, std::vector<Command> commands) {
   if (options_.player != nullptr)
-    return reply_(client, notice_message("A log is played; its state cannot be changed."));
+    return reply(client, notice_message("A log is played; its state cannot be changed."));
   tell_failure(client, edits_.apply(std::move(commands)));
   camera_.invalidate(true);
 }
@@ -300,7 +305,7 @@ void Driver::do_message(int64_t client, const DriveMessage& message) {
 void Driver::do_message(int64_t client, const CameraMessage& message) {
   if (camera_.is_open_at(message.name)) return;
   if (std::ranges::find(camera_.names(), message.name) == camera_.names().end())
-    return reply_(client, notice_message("There is no camera '" + message.name + "'."));
+    return reply(client, notice_message("There is no camera '" + message.name + "'."));
   tell_failure(client, camera_.open(message.name));
 }
 
@@ -333,7 +338,7 @@ void Driver::do_message(int64_t client, const LookAtMessage& message) {
   OrbitCamera* camera = camera_.free_camera();
   if (!camera || !frame) return;
   const auto hit = simulation_.pick(*frame, message.u, message.v);
-  if (!hit.ok()) return reply_(client, notice_message("There is nothing to look at here."));
+  if (!hit.ok()) return reply(client, notice_message("There is nothing to look at here."));
   camera_.track({});
   camera->set_pivot(hit->point_W);
   camera_.moved();
@@ -342,7 +347,7 @@ void Driver::do_message(int64_t client, const LookAtMessage& message) {
 void Driver::do_message(int64_t client, const TrackMessage& message) {
   const Body body{message.body, 0};
   if (message.body >= 0 && !simulation_.body_pose(body).ok())
-    return reply_(client, notice_message("There is no such body to track."));
+    return reply(client, notice_message("There is no such body to track."));
   camera_.track(body);
 }
 
@@ -350,21 +355,21 @@ void Driver::do_message(int64_t client, const PickMessage& message) {
   const auto frame = publisher_.newest();
   if (!frame) return;
   const auto hit = simulation_.pick(*frame, message.u, message.v);
-  reply_(client, hit.ok() ? picked_message(hit->body, hit->name, hit->point_W, false)
-                          : picked_nothing_message());
+  reply(client, hit.ok() ? picked_message(hit->body, hit->name, hit->point_W, false)
+                         : picked_nothing_message());
 }
 
 void Driver::do_message(int64_t client, const DragStartMessage& message) {
   if (grab_) do_message(grab_->client(), DragEndMessage{});
   if (options_.player != nullptr)
-    return reply_(client, notice_message("A log is played; its bodies cannot be moved."));
+    return reply(client, notice_message("A log is played; its bodies cannot be moved."));
   const auto frame = publisher_.newest();
   if (!frame) return;
   Result<Grab> grab = Grab::take(client, simulation_, *frame, message);
-  if (!grab.ok()) return reply_(client, notice_message(grab.error().message));
+  if (!grab.ok()) return reply(client, notice_message(grab.error().message));
   grab_ = std::move(*grab);
   const PickResult& hit = grab_->hit();
-  reply_(client, picked_message(hit.body, hit.name, hit.point_W, true));
+  reply(client, picked_message(hit.body, hit.name, hit.point_W, true));
   follow_grab();
 }
 
@@ -390,11 +395,11 @@ void Driver::follow_grab() {
   if (!commands.empty()) edit(grab_->client(), commands);
   const auto X_WB = simulation_.body_pose(grab_->body());
   if (X_WB.ok())
-    reply_(grab_->client(), pulled_message(X_WB->p + rotate(X_WB->q, grab_->hit().point_B)));
+    reply(grab_->client(), pulled_message(X_WB->p + rotate(X_WB->q, grab_->hit().point_B)));
 }
 
 void Driver::tell_failure(int64_t client, const Status& status) {
-  if (!status.ok()) reply_(client, notice_message(status.error().to_string()));
+  if (!status.ok()) reply(client, notice_message(status.error().to_string()));
 }
 
 }  // namespace gloam::studio

@@ -27,10 +27,13 @@ namespace gloam::studio {
 
 class Driver {
  public:
-  /// `reply` sends a text to one client; it is called on the driver's thread.
-  using Reply = std::function<void(int64_t client, std::string text)>;
+  /// Called on the driver's thread.
+  struct Outputs {
+    std::function<void(int64_t client, std::string text)> reply;  ///< to one client
+    std::function<void()> changed;  ///< requests were carried out: clients wait for the state
+  };
 
-  Driver(Simulation& simulation, const ViewOptions& options, Publisher& publisher, Reply reply);
+  Driver(Simulation& simulation, const ViewOptions& options, Publisher& publisher, Outputs outputs);
   ~Driver();
 
   /// Opens the first camera and starts the thread. Errors: as for open_camera.
@@ -94,12 +97,13 @@ class Driver {
   void set_state(int64_t client, const std::function<Result<StateKey>(const Instant&)>& make_key);
   void edit(int64_t client, std::vector<Command> commands);
   void follow_grab();
+  void reply(int64_t client, std::string text) { outputs_.reply(client, std::move(text)); }
   void tell_failure(int64_t client, const Status& status);
 
   Simulation& simulation_;
   const ViewOptions options_;
   Publisher& publisher_;
-  const Reply reply_;
+  const Outputs outputs_;
 
   mutable std::mutex mutex_;  // guards these
   std::condition_variable wake_;
@@ -116,6 +120,7 @@ class Driver {
   History history_;
   std::optional<Grab> grab_;
   double speed_ = 1;
+  Clock::time_point reported_at_;
 
   std::thread thread_;
 };

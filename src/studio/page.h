@@ -1,5 +1,5 @@
 #pragma once
-// The page's files (studio/web/), built into the library.
+// The page's files (studio/bundle/), built into the library.
 
 #include <string>
 #include <string_view>

@@ -79,8 +79,10 @@ class ViewServer::Impl : public web::ServerEvents {
             {.picture = [this](std::shared_ptr<const CameraFrame> frame,
                                uint64_t sequence) { send_picture(std::move(frame), sequence); },
              .beat = [this] { send_state(); }}),
-        driver_(simulation, options, publisher_,
-                [this](int64_t client, std::string text) { send(client, std::move(text)); }),
+        driver_(
+            simulation, options, publisher_,
+            {.reply = [this](int64_t client, std::string text) { send(client, std::move(text)); },
+             .changed = [this] { send_state(); }}),
         inspector_(simulation, inspector_outputs()),
         web_(server_options(options), *this) {}
   ~Impl() override { stop(); }

@@ -40,7 +40,8 @@ class AppliedInputs {
   JointInputs& joints() { return joints_; }
   const JointInputs& joints() const { return joints_; }
 
-  /// Pulls and turns dragged bodies; call before every step. MuJoCo errors possible: call it guarded.
+  /// Pulls and turns dragged bodies; call before every step. MuJoCo errors possible: call it
+  /// guarded.
   void before_step(const mjModel& model, mjData& data);
 
  private:

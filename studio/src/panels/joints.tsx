@@ -1,0 +1,76 @@
+import { computed, useSignal, type ReadonlySignal } from "@preact/signals";
+import { useMemo } from "preact/hooks";
+import { use_model, use_watch } from "../fields";
+import { command } from "../link";
+import { blocked, model, name_of, only_selected, selection } from "../state";
+import { Check } from "../widgets/check";
+import { Empty } from "../widgets/section";
+import { Slider } from "../widgets/slider";
+
+const kFree = 0, kBall = 1, kSlide = 2;  // mjtJoint
+const kWidths = [7, 4, 1, 1];  // numbers in qpos
+const kParts = { [kFree]: ["x", "y", "z", "qw", "qx", "qy", "qz"], [kBall]: ["qw", "qx", "qy", "qz"] } as Record<number, string[]>;
+const kMost = 60;  // rows; more are found by the filter
+
+interface Row { joint: number; name: string; type: number; address: number; low: number; high: number; body: number }
+
+export function Joints() {
+  const filter = useSignal("");
+  const [types, addresses, limited, ranges, bodies] = use_model("jnt_type", "jnt_qposadr", "jnt_limited", "jnt_range", "jnt_bodyid");
+  const [qpos] = use_watch("qpos");
+  const names = model.value?.joints ?? [];
+  if (!names.length) return <Empty text="This model has no joints." />;
+  const rows: Row[] = [...types.value].map((type, joint) => ({
+    joint, type, name: name_of(names, joint, "joint"), address: addresses.value[joint], body: bodies.value[joint],
+    low: limited.value[joint] ? ranges.value[2 * joint] : type === kSlide ? -1 : -Math.PI,
+    high: limited.value[joint] ? ranges.value[2 * joint + 1] : type === kSlide ? 1 : Math.PI,
+  }));
+  const wanted = rows.filter(({ name, body }) => name.toLowerCase().includes(filter.value.toLowerCase())
+    && (!only_selected.value || !selection.value || body === selection.value.id));
+  return (
+    <>
+      <Filter filter={filter} />
+      {wanted.slice(0, kMost).map((row) => row.type in kParts ? <Numbers key={row.joint} row={row} qpos={qpos} /> : <OneNumber key={row.joint} row={row} qpos={qpos} />)}
+      {wanted.length > kMost && <p class="hint">{wanted.length - kMost} more: type a part of the name.</p>}
+      {!wanted.length && <Empty text="No joint has this name." />}
+    </>
+  );
+}
+
+export function Filter({ filter }: { filter: { value: string } }) {
+  return (
+    <div class="row">
+      <input type="search" placeholder="Filter by name" aria-label="Filter by name" value={filter.value} onInput={(event) => { filter.value = event.currentTarget.value; }} />
+      {selection.value && <Check label={`of ${selection.value.name}`} tip="Only elements of the selected body" on={only_selected.value} set={(on) => { only_selected.value = on; }} />}
+    </div>
+  );
+}
+
+function OneNumber({ row, qpos }: { row: Row; qpos: ReadonlySignal<Float32Array> }) {
+  const value = useMemo(() => computed(() => qpos.value[row.address] ?? 0), [qpos, row.address]);
+  return (
+    <Slider label={row.name} unit={row.type === kSlide ? "m" : "rad"} value={value} low={row.low} high={row.high} blocked={blocked.value} testid={`joint-${row.joint}`}
+      set={(next) => command({ type: "set_joint", joint: row.joint, qpos: [next] })} />
+  );
+}
+
+/** A free or ball joint: its numbers in qpos. */
+function Numbers({ row, qpos }: { row: Row; qpos: ReadonlySignal<Float32Array> }) {
+  const width = kWidths[row.type];
+  const present = () => Array.from({ length: width }, (_, k) => qpos.value[row.address + k] ?? 0);
+  return (
+    <fieldset class="numbers-of" data-testid={`joint-${row.joint}`}>
+      <legend>{row.name}</legend>
+      {kParts[row.type].map((part, k) => (
+        <label key={part}><span>{part}</span>
+          <input type="number" step="any" value={(qpos.value[row.address + k] ?? 0).toFixed(3)} disabled={!!blocked.value} title={blocked.value} aria-label={`${row.name} ${part}`}
+            onChange={(event) => {
+              const next = present();
+              next[k] = Number(event.currentTarget.value);
+              if (next.every(Number.isFinite)) command({ type: "set_joint", joint: row.joint, qpos: next });
+            }} />
+        </label>
+      ))}
+    </fieldset>
+  );
+}
