@@ -118,6 +118,19 @@ class Panels(StudioTest):
         expect(self.open_section("Sensors").get_by_test_id("sensor-0")).to_have_text("0.800")
         self.check_console()
 
+    def test_a_number_is_typed_while_the_simulation_changes_it(self):
+        page = self.open_studio("--play")
+        field = self.open_section("Joints").get_by_test_id("joint-1").locator("input").nth(0)  # x of the free box
+        field.click()
+        field.press("Control+a")
+        for key in "1.25":
+            field.press(key)
+            page.wait_for_timeout(150)  # several states
+        expect(field).to_have_value("1.25")
+        field.press("Enter")
+        expect(field).to_have_value("1.250")
+        self.check_console()
+
     def test_controls_constraints_and_keyframes(self):
         page = self.open_studio()
         control = self.open_section("Control").get_by_test_id("control-0").locator("input[type=number]")

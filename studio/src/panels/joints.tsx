@@ -4,6 +4,7 @@ import { use_model, use_watch } from "../fields";
 import { command } from "../link";
 import { blocked, model, name_of, only_selected, selection } from "../state";
 import { Check } from "../widgets/check";
+import { NumberField } from "../widgets/number_field";
 import { Empty } from "../widgets/section";
 import { Slider } from "../widgets/slider";
 
@@ -63,11 +64,11 @@ function Numbers({ row, qpos }: { row: Row; qpos: ReadonlySignal<Float32Array> }
       <legend>{row.name}</legend>
       {kParts[row.type].map((part, k) => (
         <label key={part}><span>{part}</span>
-          <input type="number" step="any" value={(qpos.value[row.address + k] ?? 0).toFixed(3)} disabled={!!blocked.value} title={blocked.value} aria-label={`${row.name} ${part}`}
-            onChange={(event) => {
+          <NumberField label={`${row.name} ${part}`} value={qpos.value[row.address + k] ?? 0} blocked={blocked.value}
+            set={(value) => {
               const next = present();
-              next[k] = Number(event.currentTarget.value);
-              if (next.every(Number.isFinite)) command({ type: "set_joint", joint: row.joint, qpos: next });
+              next[k] = value;
+              command({ type: "set_joint", joint: row.joint, qpos: next });
             }} />
         </label>
       ))}

@@ -1,4 +1,5 @@
 import { useSignal, type ReadonlySignal } from "@preact/signals";
+import { NumberField } from "./number_field";
 
 export interface SliderProps {
   label: string;
@@ -28,13 +29,7 @@ export function Slider({ label, unit = "", value, low, high, blocked = "", testi
       <span class="name">{label}</span>
       <input type="range" min={low} max={high} step="any" value={shown} disabled={!!blocked} aria-label={label}
         onInput={(event) => move(event.currentTarget.value)} onChange={release} onBlur={release} />
-      <input type="number" min={low} max={high} step="any" value={shown.toFixed(3)} disabled={!!blocked} aria-label={`${label}, number`}
-        onChange={(event) => {
-          const wanted = Number(event.currentTarget.value);
-          if (wanted >= low && wanted <= high) move(event.currentTarget.value);
-          else event.currentTarget.value = shown.toFixed(3);
-          release();
-        }} />
+      <NumberField label={`${label}, number`} value={shown} low={low} high={high} blocked={blocked} set={set} />
       <span class="unit">{unit}</span>
     </label>
   );
