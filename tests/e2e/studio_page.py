@@ -57,6 +57,8 @@ DRAWN = """() => {
   return drawn;
 }"""
 
+expect.set_options(timeout=20_000)  # the machine may be busy
+
 SOFTWARE_GL = ["--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
 
 
@@ -104,7 +106,7 @@ class StudioTest(ProgramTest):
     def open_page(self, width=1440, height=900):
         """A page that shows an image. self.problems: complaints in its console; self.packets: kinds of images that came."""
         context = self.browser.new_context(viewport={"width": width, "height": height})
-        context.set_default_timeout(15_000)
+        context.set_default_timeout(30_000)
         self.addCleanup(context.close)
         page = context.new_page()
         self.problems, self.packets = [], []
@@ -115,7 +117,7 @@ class StudioTest(ProgramTest):
         self.wait("document.getElementById('picture')?.width > 4", page=page)
         return page
 
-    def wait(self, expression, page=None, seconds=15, arg=None):
+    def wait(self, expression, page=None, seconds=30, arg=None):
         """Until an expression of the page is true. (Playwright's own wait needs eval(), which the page's policy forbids.)"""
         page = page or self.page
         deadline = time.monotonic() + seconds

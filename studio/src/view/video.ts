@@ -3,7 +3,7 @@ import type { ImageHeader } from "../protocol";
 // H.264 by WebCodecs. Each packet gives one picture, in order.
 
 const kCodec = "avc1.640033";  // High profile, level 5.1
-const kPatience = 5000;  // [ms] until a decoder that gives no picture counts as failed
+const kPatience = 15_000;  // [ms] until a decoder that gives no picture counts as failed
 
 export function can_decode_video(): boolean {
   return typeof VideoDecoder !== "undefined";
