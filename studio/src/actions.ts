@@ -98,8 +98,9 @@ async function paste_state() {
   } catch {
     // Without permission to read the clipboard, the state that this page copied is pasted.
   }
-  if (text) command({ type: "paste_state", text });
-  else show_notice("The clipboard contains no state. Copy one first.");
+  if (text) {
+    if (command({ type: "paste_state", text })) show_notice("The state is that of the clipboard.");
+  } else show_notice("The clipboard contains no state. Copy one first.");
 }
 
 function save_state() {
