@@ -46,6 +46,16 @@ bool merge(ControlMessage& waiting, const ControlMessage& next) {
       waiting);
 }
 
+/// The same point in another picture of the camera: pictures are coarser while something moves.
+template <class Message>
+Message scaled_to(const CameraFrame& frame, Message message) {
+  const double scale =
+      message.width > 0 ? frame.intrinsics.width / static_cast<double>(message.width) : 1;
+  message.u *= scale;
+  message.v *= scale;
+  return message;
+}
+
 }  // namespace
 
 Driver::Driver(Simulation& simulation, const ViewOptions& options, Publisher& publisher,
@@ -337,7 +347,8 @@ void Driver::do_message(int64_t client, const LookAtMessage& message) {
   const auto frame = publisher_.newest();
   OrbitCamera* camera = camera_.free_camera();
   if (!camera || !frame) return;
-  const auto hit = simulation_.pick(*frame, message.u, message.v);
+  const Pixel at = scaled_to(*frame, message);
+  const auto hit = simulation_.pick(*frame, at.u, at.v);
   if (!hit.ok()) return reply(client, notice_message("There is nothing to look at here."));
   camera_.track({});
   camera->set_pivot(hit->point_W);
@@ -354,7 +365,8 @@ void Driver::do_message(int64_t client, const TrackMessage& message) {
 void Driver::do_message(int64_t client, const PickMessage& message) {
   const auto frame = publisher_.newest();
   if (!frame) return;
-  const auto hit = simulation_.pick(*frame, message.u, message.v);
+  const Pixel at = scaled_to(*frame, message);
+  const auto hit = simulation_.pick(*frame, at.u, at.v);
   reply(client, hit.ok() ? picked_message(hit->body, hit->name, hit->point_W, false)
                          : picked_nothing_message());
 }
@@ -365,7 +377,7 @@ void Driver::do_message(int64_t client, const DragStartMessage& message) {
     return reply(client, notice_message("A log is played; its bodies cannot be moved."));
   const auto frame = publisher_.newest();
   if (!frame) return;
-  Result<Grab> grab = Grab::take(client, simulation_, *frame, message);
+  Result<Grab> grab = Grab::take(client, simulation_, *frame, scaled_to(*frame, message));
   if (!grab.ok()) return reply(client, notice_message(grab.error().message));
   grab_ = std::move(*grab);
   const PickResult& hit = grab_->hit();
@@ -376,7 +388,8 @@ void Driver::do_message(int64_t client, const DragStartMessage& message) {
 void Driver::do_message(int64_t client, const DragMoveMessage& message) {
   const auto frame = publisher_.newest();
   if (!grab_ || grab_->client() != client || !frame) return;
-  grab_->move_to(*frame, message.u, message.v);
+  const Pixel at = scaled_to(*frame, message);
+  grab_->move_to(*frame, at.u, at.v);
   follow_grab();
 }
 

@@ -36,8 +36,7 @@ class Reader {
     if (found == nullptr || !found->is_boolean()) return fail(key, "must be true or false") != 0;
     return found->get<bool>();
   }
-  /// A flag that may be left out: false.
-  bool optional_flag(const char* key) { return object_.contains(key) && flag(key); }
+  bool has(const char* key) const { return object_.contains(key); }
   std::string text(const char* key, size_t max_size) {
     const json* found = find(key);
     if (found == nullptr || !found->is_string()) {
@@ -118,6 +117,7 @@ Message point(Reader& r) {
   Message message;
   message.u = r.number("u", -kMaxPixel, kMaxPixel);
   message.v = r.number("v", -kMaxPixel, kMaxPixel);
+  if (r.has("width")) message.width = r.integer("width", 1, static_cast<int>(kMaxPixel));
   return message;
 }
 
@@ -133,7 +133,7 @@ Message nothing(Reader&) {
 
 DragStartMessage drag_start(Reader& r) {
   auto message = point<DragStartMessage>(r);
-  message.turn = r.optional_flag("turn");
+  message.turn = r.has("turn") && r.flag("turn");
   return message;
 }
 

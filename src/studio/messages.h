@@ -62,8 +62,13 @@ struct DriveMessage {
   double vx = 0, vy = 0, yaw_rate = 0, vz = 0;  ///< [m/s], [rad/s]
 };
 
-// The camera. Travel of the mouse is in heights of the picture, to the right and down; pixels are
-// of the newest picture, u to the right, v down, as in gloam::Intrinsics.
+/// A point of a picture [px]: u to the right, v down, as in gloam::Intrinsics.
+struct Pixel {
+  double u = 0, v = 0;
+  int width = 0;  ///< of the picture that the client shows; 0 = of the newest
+};
+
+// The camera. Travel of the mouse is in heights of the picture, to the right and down.
 struct CameraMessage {
   std::string name;
 };
@@ -79,23 +84,16 @@ struct ZoomMessage {
   double amount = 0;  ///< > 0 goes closer; the distance is multiplied by exp(-amount)
 };
 /// Moves the pivot to the point at a pixel.
-struct LookAtMessage {
-  double u = 0, v = 0;
-};
+struct LookAtMessage : Pixel {};
 /// The pivot follows a body.
 struct TrackMessage {
   int body = -1;  ///< -1 = none
 };
-struct PickMessage {
-  double u = 0, v = 0;
-};
-struct DragStartMessage {
-  double u = 0, v = 0;
+struct PickMessage : Pixel {};
+struct DragStartMessage : Pixel {
   bool turn = false;  ///< rotates the body instead of pulling it
 };
-struct DragMoveMessage {
-  double u = 0, v = 0;
-};
+struct DragMoveMessage : Pixel {};
 struct DragEndMessage {};
 
 // Data of the model and of the present instant.

@@ -60,7 +60,8 @@ PictureSender::Bytes PictureSender::jpeg() {
   return jpeg_;
 }
 
-/// A client whose last packet was replaced cannot decode the next one: it waits for a key packet.
+/// A client to which the last packet has not been sent yet could not decode the next one: it waits
+/// for a key packet.
 void PictureSender::send_video() {
   const auto coded = encode_video();
   if (!coded.ok()) {  // pictures too large or too small for video
@@ -71,8 +72,13 @@ void PictureSender::send_video() {
       make_packet(newest_, Codec::kH264, coded->is_key, coded->bytes));
   for (auto& [id, viewer] : viewers_) {
     if (viewer.codec != Codec::kH264 || (viewer.needs_key && !coded->is_key)) continue;
-    const bool is_lost = viewer.client->outbox.replace(slot_, {"", packet});
-    viewer.needs_key = is_lost && !coded->is_key;
+    web::Outbox& outbox = viewer.client->outbox;
+    if (coded->is_key) {
+      outbox.replace(slot_, {"", packet});
+      viewer.needs_key = false;
+    } else {
+      viewer.needs_key = !outbox.append(slot_, {"", packet});
+    }
   }
 }
 

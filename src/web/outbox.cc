@@ -27,13 +27,24 @@ void Outbox::add(Frame frame, bool is_kept) {
   wake_taker();
 }
 
-bool Outbox::replace(size_t slot, Frame frame) {
+void Outbox::replace(size_t slot, Frame frame) {
+  const std::lock_guard lock(mutex_);
+  if (closed_ || overflowed_) return;
+  slots_.at(slot).newest = std::move(frame);
+  wake_taker();
+}
+
+bool Outbox::append(size_t slot, Frame frame) {
   const std::lock_guard lock(mutex_);
   if (closed_ || overflowed_) return false;
-  const bool is_lost = slots_.at(slot).newest.has_value();
-  slots_[slot].newest = std::move(frame);
+  std::optional<Frame>& newest = slots_.at(slot).newest;
+  if (newest.has_value()) {
+    newest.reset();
+    return false;
+  }
+  newest = std::move(frame);
   wake_taker();
-  return is_lost;
+  return true;
 }
 
 void Outbox::acknowledge(size_t slot) {

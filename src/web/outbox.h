@@ -47,8 +47,11 @@ class Outbox {
   /// Data: the oldest make room for it.
   void offer(Frame frame);
   /// A frame that replaces the waiting frame of its slot. Slots are sent in their order, after all
-  /// other messages. Returns whether a frame waited, which is lost.
-  bool replace(size_t slot, Frame frame);
+  /// other messages.
+  void replace(size_t slot, Frame frame);
+  /// A frame that is of use only after the one before it: if that one still waits, both are
+  /// dropped. Returns whether it was taken.
+  bool append(size_t slot, Frame frame);
   /// The client has processed a frame of a slot whose number of frames is limited.
   void acknowledge(size_t slot);
   /// The next one; empty: nothing can be sent, and `wake` is called when this changes.

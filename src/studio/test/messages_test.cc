@@ -68,6 +68,7 @@ TEST(Messages, WrongOnesAreRefusedInPlainWords) {
       {R"({"type":"watch","fields":[1],"rate":1})", "a list of strings"},
       {R"({"type":"get","id":0,"fields":[]})", "'id' is out of range"},
       {R"({"type":"drag_start","u":1,"v":1,"turn":"yes"})", "true or false"},
+      {R"({"type":"pick","u":1,"v":1,"width":0})", "'width' is out of range"},
       {R"({"type":"codec","name":"av1"})", "not one of the words"},
       {std::string(60000, '['), "not JSON"},
   };

@@ -146,7 +146,7 @@ CameraFrame frame_from_above() {
 TEST(Grab, MovesAFreeBodyWhileItIsPausedAndPullsItWhileItRuns) {
   const auto simulation = make_rig();
   const CameraFrame frame = frame_from_above();
-  auto grab = Grab::take(1, *simulation, frame, {100, 50});
+  auto grab = Grab::take(1, *simulation, frame, {{100, 50}});
   ASSERT_TRUE(grab.ok()) << grab.error().to_string();
   EXPECT_EQ(grab->hit().name, "box");
   grab->move_to(frame, 120, 50);
@@ -166,7 +166,7 @@ TEST(Grab, MovesAFreeBodyWhileItIsPausedAndPullsItWhileItRuns) {
 TEST(Grab, TurnsAboutAxesOfTheImage) {
   const auto simulation = make_rig();
   const CameraFrame frame = frame_from_above();
-  auto grab = Grab::take(1, *simulation, frame, {.u = 100, .v = 50, .turn = true});
+  auto grab = Grab::take(1, *simulation, frame, {{100, 50}, true});
   ASSERT_TRUE(grab.ok());
   grab->move_to(frame, 150, 50);  // half a height to the right: a quarter turn about "up"
   const auto turned = grab->follow(frame, simulation->latest(), false);
@@ -179,13 +179,13 @@ TEST(Grab, TurnsAboutAxesOfTheImage) {
 TEST(Grab, AMocapBodyGoesWithTheMouseAndTheWorldDoesNot) {
   const auto simulation = make_rig();
   const CameraFrame frame = frame_from_above();
-  auto hand = Grab::take(1, *simulation, frame, {100 + 100 / 3.8, 50});
+  auto hand = Grab::take(1, *simulation, frame, {{100 + 100 / 3.8, 50}});
   ASSERT_TRUE(hand.ok()) << hand.error().to_string();
   EXPECT_EQ(hand->hit().name, "hand");
   hand->move_to(frame, 140, 50);
   EXPECT_TRUE(std::holds_alternative<SetMocapPose>(
       hand->follow(frame, simulation->latest(), false).at(0).what));
-  EXPECT_FALSE(Grab::take(1, *simulation, frame, {5, 5}).ok()) << "the floor";
+  EXPECT_FALSE(Grab::take(1, *simulation, frame, {{5, 5}}).ok()) << "the floor";
 }
 
 TEST(Fields, AreWrittenAsTheProtocolSays) {

@@ -8,7 +8,7 @@ import { image } from "./images";
 // Mouse and touch on the view: gestures become messages, or moves of the local camera while the browser draws the scene.
 
 /** A body that the mouse pulls: pixel of the mouse, and the grabbed point once the server has found it. */
-export interface Pull { u: number; v: number; turn: boolean; point: Vector | null }
+export interface Pull { u: number; v: number; width: number; turn: boolean; point: Vector | null }
 export const pull = signal<Pull | null>(null);
 export const gesture_kind = signal("");
 
@@ -42,7 +42,7 @@ export function image_box(element: HTMLElement) {
 
 function pixel(event: MouseEvent) {
   const box = image_box(stage), at = stage.getBoundingClientRect();
-  return { u: (event.clientX - at.left - box.left) / box.scale, v: (event.clientY - at.top - box.top) / box.scale };
+  return { u: (event.clientX - at.left - box.left) / box.scale, v: (event.clientY - at.top - box.top) / box.scale, width: box.width };
 }
 
 function in_image({ u, v }: { u: number; v: number }) {
@@ -63,7 +63,7 @@ function flush() {
   zoom = 0;
   if (dx || dy) draw_here.value ? local?.[kind](dx, dy) : send({ type: kind, dx, dy });
   if (amount) draw_here.value ? local?.zoom(amount) : send({ type: "zoom", amount });
-  if (pull_moved && pull.value) send({ type: "drag_move", u: pull.value.u, v: pull.value.v });
+  if (pull_moved && pull.value) send({ type: "drag_move", u: pull.value.u, v: pull.value.v, width: pull.value.width });
   pull_moved = false;
 }
 

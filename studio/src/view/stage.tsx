@@ -58,7 +58,7 @@ function PullLine() {
   const box = image_box(stage), from = project(shown, held.point);
   if (!from) return null;
   const x = (u: number) => box.left + box.scale * u, y = (v: number) => box.top + box.scale * v;
-  const line = { x1: x(from.u), y1: y(from.v), x2: x(held.u), y2: y(held.v) };
+  const line = { x1: x(from.u), y1: y(from.v), x2: x(held.u * shown.width / held.width), y2: y(held.v * shown.width / held.width) };
   return (
     <svg id="overlay" class="on" aria-hidden="true">
       <line class="shadow" {...line} /><line {...line} />
