@@ -15,15 +15,14 @@ namespace gloam {
 namespace {
 
 template <class H>
-Result<H> find(const CompiledWorld& world, mjtObj type, mjtSize mjModel::* count, const char* kind,
-               const std::string& name) {
+Result<H> find(const CompiledWorld& world, mjtObj type, const char* kind, const std::string& name) {
   const mjModel* m = world.model.get();
   const int id = mj_name2id(m, type, name.c_str());
   if (id >= 0) return H{id, world.serial};
   return Error{ErrorKind::kInput,
                fmt::format("there is no {} '{}'", kind, name),
                {},
-               suggest_name(name, object_names(m, type, static_cast<int>(m->*count)))};
+               suggest_name(name, object_names(m, type))};
 }
 
 const char* shape_name(int type) {
@@ -140,9 +139,9 @@ std::string geom_detail(const mjModel* m, int geom) {
 }
 
 template <class Detail>
-std::vector<NamedElement> list(const mjModel* m, mjtObj type, mjtSize count, Detail&& detail) {
+std::vector<NamedElement> list(const mjModel* m, mjtObj type, Detail&& detail) {
   std::vector<NamedElement> elements;
-  const std::vector<std::string> names = object_names(m, type, static_cast<int>(count));
+  const std::vector<std::string> names = object_names(m, type);
   for (size_t i = 0; i < names.size(); ++i)
     elements.push_back({names[i], detail(m, static_cast<int>(i))});
   return elements;
@@ -169,90 +168,76 @@ uint64_t next_world_serial() {
 }
 
 Result<Joint> World::find_joint(const std::string& name) const {
-  return find<Joint>(*compiled_, mjOBJ_JOINT, &mjModel::njnt, "joint", name);
+  return find<Joint>(*compiled_, mjOBJ_JOINT, "joint", name);
 }
 Result<Body> World::find_body(const std::string& name) const {
-  return find<Body>(*compiled_, mjOBJ_BODY, &mjModel::nbody, "body", name);
+  return find<Body>(*compiled_, mjOBJ_BODY, "body", name);
 }
 Result<Actuator> World::find_actuator(const std::string& name) const {
-  return find<Actuator>(*compiled_, mjOBJ_ACTUATOR, &mjModel::nactuator, "actuator", name);
+  return find<Actuator>(*compiled_, mjOBJ_ACTUATOR, "actuator", name);
 }
 Result<SensorHandle> World::find_sensor(const std::string& name) const {
-  return find<SensorHandle>(*compiled_, mjOBJ_SENSOR, &mjModel::nsensor, "sensor", name);
+  return find<SensorHandle>(*compiled_, mjOBJ_SENSOR, "sensor", name);
 }
 Result<Camera> World::find_camera(const std::string& name) const {
   const mjModel* m = compiled_->model.get();
   for (int i = 0; i < static_cast<int>(m->ncam); ++i) {
     if (camera_name(*m, i) == name) return Camera{i, compiled_->serial};
   }
-  return find<Camera>(*compiled_, mjOBJ_CAMERA, &mjModel::ncam, "camera", name);
+  return find<Camera>(*compiled_, mjOBJ_CAMERA, "camera", name);
 }
 Result<Geom> World::find_geom(const std::string& name) const {
-  return find<Geom>(*compiled_, mjOBJ_GEOM, &mjModel::ngeom, "geom", name);
+  return find<Geom>(*compiled_, mjOBJ_GEOM, "geom", name);
 }
 Result<Tendon> World::find_tendon(const std::string& name) const {
-  return find<Tendon>(*compiled_, mjOBJ_TENDON, &mjModel::ntendon, "tendon", name);
+  return find<Tendon>(*compiled_, mjOBJ_TENDON, "tendon", name);
 }
 Result<Equality> World::find_equality(const std::string& name) const {
-  return find<Equality>(*compiled_, mjOBJ_EQUALITY, &mjModel::neq, "equality constraint", name);
+  return find<Equality>(*compiled_, mjOBJ_EQUALITY, "equality constraint", name);
 }
 
 uint64_t World::serial() const { return compiled_->serial; }
 
 Result<std::vector<std::string>> World::names(const std::string& type) const {
-  using Counts = std::pair<mjtObj, mjtSize mjModel::*>;
-  static constexpr Counts kCounts[] = {
-      {mjOBJ_BODY, &mjModel::nbody},         {mjOBJ_JOINT, &mjModel::njnt},
-      {mjOBJ_GEOM, &mjModel::ngeom},         {mjOBJ_SITE, &mjModel::nsite},
-      {mjOBJ_CAMERA, &mjModel::ncam},        {mjOBJ_LIGHT, &mjModel::nlight},
-      {mjOBJ_FLEX, &mjModel::nflex},         {mjOBJ_MESH, &mjModel::nmesh},
-      {mjOBJ_SKIN, &mjModel::nskin},         {mjOBJ_HFIELD, &mjModel::nhfield},
-      {mjOBJ_TEXTURE, &mjModel::ntex},       {mjOBJ_MATERIAL, &mjModel::nmat},
-      {mjOBJ_PAIR, &mjModel::npair},         {mjOBJ_EXCLUDE, &mjModel::nexclude},
-      {mjOBJ_EQUALITY, &mjModel::neq},       {mjOBJ_TENDON, &mjModel::ntendon},
-      {mjOBJ_ACTUATOR, &mjModel::nactuator}, {mjOBJ_SENSOR, &mjModel::nsensor},
-      {mjOBJ_KEY, &mjModel::nkey},           {mjOBJ_PLUGIN, &mjModel::nplugin}};
-  const int wanted = mju_str2Type(type.c_str());
-  const mjModel* m = compiled_->model.get();
-  for (const auto& [kind, count] : kCounts)
-    if (kind == wanted) return object_names(m, kind, static_cast<int>(m->*count));
+  const auto kind = static_cast<mjtObj>(mju_str2Type(type.c_str()));
+  if (object_count(*compiled_->model, kind) >= 0) return object_names(compiled_->model.get(), kind);
   return Error{ErrorKind::kUsage, fmt::format("MuJoCo has no elements of type '{}'", type)};
 }
 
 WorldInfo World::info() const {
   const mjModel* m = compiled_->model.get();
   WorldInfo info;
-  info.bodies = list(m, mjOBJ_BODY, m->nbody, [](const mjModel* m, int i) {
+  info.bodies = list(m, mjOBJ_BODY, [](const mjModel* m, int i) {
     return fmt::format("{:.4g} kg", m->body_mass[i]);
   });
-  info.joints = list(m, mjOBJ_JOINT, m->njnt, joint_detail);
-  info.actuators = list(m, mjOBJ_ACTUATOR, m->nactuator, actuator_detail);
-  info.sensors = list(m, mjOBJ_SENSOR, m->nsensor, [](const mjModel* m, int i) {
+  info.joints = list(m, mjOBJ_JOINT, joint_detail);
+  info.actuators = list(m, mjOBJ_ACTUATOR, actuator_detail);
+  info.sensors = list(m, mjOBJ_SENSOR, [](const mjModel* m, int i) {
     const int dim = m->sensor_dim[i];
     return fmt::format("{} number{}", dim, dim == 1 ? "" : "s");
   });
   for (const ProbeDescription& probe : compiled_->probes)
     info.sensors.push_back({probe.options.name, "probe of " + probe.options.quantity});
-  info.cameras = list(m, mjOBJ_CAMERA, m->ncam, camera_detail);
+  info.cameras = list(m, mjOBJ_CAMERA, camera_detail);
   for (size_t i = 0; i < info.cameras.size(); ++i)
     info.cameras[i].name = camera_name(*m, static_cast<int>(i));
-  info.geoms = list(m, mjOBJ_GEOM, m->ngeom, geom_detail);
-  info.lights = list(m, mjOBJ_LIGHT, m->nlight, [](const mjModel* m, int i) {
+  info.geoms = list(m, mjOBJ_GEOM, geom_detail);
+  info.lights = list(m, mjOBJ_LIGHT, [](const mjModel* m, int i) {
     static constexpr const char* kTypes[] = {"spot", "directional", "point", "image"};
     const int type = m->light_type[i];
     return std::string(type >= 0 && type < 4 ? kTypes[type] : "other");
   });
-  info.materials = list(m, mjOBJ_MATERIAL, m->nmat, [](const mjModel* m, int i) {
+  info.materials = list(m, mjOBJ_MATERIAL, [](const mjModel* m, int i) {
     const float* c = m->mat_rgba + 4 * i;
     return fmt::format("rgba {:.3g} {:.3g} {:.3g} {:.3g}", c[0], c[1], c[2], c[3]);
   });
-  info.sites = list(m, mjOBJ_SITE, m->nsite, site_detail);
-  info.tendons = list(m, mjOBJ_TENDON, m->ntendon, tendon_detail);
-  info.equalities = list(m, mjOBJ_EQUALITY, m->neq, equality_detail);
-  info.keyframes = list(m, mjOBJ_KEY, m->nkey, [](const mjModel* m, int i) {
+  info.sites = list(m, mjOBJ_SITE, site_detail);
+  info.tendons = list(m, mjOBJ_TENDON, tendon_detail);
+  info.equalities = list(m, mjOBJ_EQUALITY, equality_detail);
+  info.keyframes = list(m, mjOBJ_KEY, [](const mjModel* m, int i) {
     return fmt::format("at {:.4g} s", m->key_time[i]);
   });
-  info.textures = list(m, mjOBJ_TEXTURE, m->ntex, texture_detail);
+  info.textures = list(m, mjOBJ_TEXTURE, texture_detail);
   info.nq = static_cast<int>(m->nq);
   info.nv = static_cast<int>(m->nv);
   info.nu = static_cast<int>(m->nu);

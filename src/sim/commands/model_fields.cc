@@ -55,7 +55,6 @@ struct Range {
 struct RowKind {
   const char* rows;
   mjtObj type;
-  mjtSize mjModel::* count;
   /// The rows of element `id`; null = row `id`.
   Range (*range)(const mjModel&, int id);
 };
@@ -84,38 +83,22 @@ Range plugin_state_range(const mjModel& m, int id) {
 Range numeric_range(const mjModel& m, int id) { return {m.numeric_adr[id], m.numeric_size[id]}; }
 
 constexpr RowKind kRowKinds[] = {
-    {"nbody", mjOBJ_BODY, &mjModel::nbody, nullptr},
-    {"njnt", mjOBJ_JOINT, &mjModel::njnt, nullptr},
-    {"nq", mjOBJ_JOINT, &mjModel::njnt, qpos_range},
-    {"nv", mjOBJ_JOINT, &mjModel::njnt, dof_range},
-    {"ngeom", mjOBJ_GEOM, &mjModel::ngeom, nullptr},
-    {"nsite", mjOBJ_SITE, &mjModel::nsite, nullptr},
-    {"ncam", mjOBJ_CAMERA, &mjModel::ncam, nullptr},
-    {"nlight", mjOBJ_LIGHT, &mjModel::nlight, nullptr},
-    {"nflex", mjOBJ_FLEX, &mjModel::nflex, nullptr},
-    {"nmesh", mjOBJ_MESH, &mjModel::nmesh, nullptr},
-    {"nskin", mjOBJ_SKIN, &mjModel::nskin, nullptr},
-    {"nhfield", mjOBJ_HFIELD, &mjModel::nhfield, nullptr},
-    {"ntex", mjOBJ_TEXTURE, &mjModel::ntex, nullptr},
-    {"nmat", mjOBJ_MATERIAL, &mjModel::nmat, nullptr},
-    {"npair", mjOBJ_PAIR, &mjModel::npair, nullptr},
-    {"nexclude", mjOBJ_EXCLUDE, &mjModel::nexclude, nullptr},
-    {"neq", mjOBJ_EQUALITY, &mjModel::neq, nullptr},
-    {"ntendon", mjOBJ_TENDON, &mjModel::ntendon, nullptr},
-    {"nactuator", mjOBJ_ACTUATOR, &mjModel::nactuator, nullptr},
-    {"nout", mjOBJ_ACTUATOR, &mjModel::nactuator, output_range},
-    {"nu", mjOBJ_ACTUATOR, &mjModel::nactuator, ctrl_range},
-    {"na", mjOBJ_ACTUATOR, &mjModel::nactuator, act_range},
-    {"nsensor", mjOBJ_SENSOR, &mjModel::nsensor, nullptr},
-    {"nsensordata", mjOBJ_SENSOR, &mjModel::nsensor, sensor_range},
-    {"nmocap", mjOBJ_BODY, &mjModel::nbody, mocap_range},
-    {"nkey", mjOBJ_KEY, &mjModel::nkey, nullptr},
-    {"nnumeric", mjOBJ_NUMERIC, &mjModel::nnumeric, nullptr},
-    {"nnumericdata", mjOBJ_NUMERIC, &mjModel::nnumeric, numeric_range},
-    {"ntext", mjOBJ_TEXT, &mjModel::ntext, nullptr},
-    {"ntuple", mjOBJ_TUPLE, &mjModel::ntuple, nullptr},
-    {"nplugin", mjOBJ_PLUGIN, &mjModel::nplugin, nullptr},
-    {"npluginstate", mjOBJ_PLUGIN, &mjModel::nplugin, plugin_state_range},
+    {"nbody", mjOBJ_BODY, nullptr},         {"njnt", mjOBJ_JOINT, nullptr},
+    {"nq", mjOBJ_JOINT, qpos_range},        {"nv", mjOBJ_JOINT, dof_range},
+    {"ngeom", mjOBJ_GEOM, nullptr},         {"nsite", mjOBJ_SITE, nullptr},
+    {"ncam", mjOBJ_CAMERA, nullptr},        {"nlight", mjOBJ_LIGHT, nullptr},
+    {"nflex", mjOBJ_FLEX, nullptr},         {"nmesh", mjOBJ_MESH, nullptr},
+    {"nskin", mjOBJ_SKIN, nullptr},         {"nhfield", mjOBJ_HFIELD, nullptr},
+    {"ntex", mjOBJ_TEXTURE, nullptr},       {"nmat", mjOBJ_MATERIAL, nullptr},
+    {"npair", mjOBJ_PAIR, nullptr},         {"nexclude", mjOBJ_EXCLUDE, nullptr},
+    {"neq", mjOBJ_EQUALITY, nullptr},       {"ntendon", mjOBJ_TENDON, nullptr},
+    {"nactuator", mjOBJ_ACTUATOR, nullptr}, {"nout", mjOBJ_ACTUATOR, output_range},
+    {"nu", mjOBJ_ACTUATOR, ctrl_range},     {"na", mjOBJ_ACTUATOR, act_range},
+    {"nsensor", mjOBJ_SENSOR, nullptr},     {"nsensordata", mjOBJ_SENSOR, sensor_range},
+    {"nmocap", mjOBJ_BODY, mocap_range},    {"nkey", mjOBJ_KEY, nullptr},
+    {"nnumeric", mjOBJ_NUMERIC, nullptr},   {"nnumericdata", mjOBJ_NUMERIC, numeric_range},
+    {"ntext", mjOBJ_TEXT, nullptr},         {"ntuple", mjOBJ_TUPLE, nullptr},
+    {"nplugin", mjOBJ_PLUGIN, nullptr},     {"npluginstate", mjOBJ_PLUGIN, plugin_state_range},
 };
 
 Result<Range> rows_of(const mjModel& m, const std::string& field, const char* row_kind,
@@ -124,11 +107,10 @@ Result<Range> rows_of(const mjModel& m, const std::string& field, const char* ro
     if (std::strcmp(kind.rows, row_kind) != 0) continue;
     const int id = mj_name2id(&m, kind.type, element.c_str());
     if (id < 0) {
-      return Error{
-          ErrorKind::kInput,
-          fmt::format("there is no {} '{}'", mju_type2Str(kind.type), element),
-          {},
-          suggest_name(element, object_names(&m, kind.type, static_cast<int>(m.*kind.count)))};
+      return Error{ErrorKind::kInput,
+                   fmt::format("there is no {} '{}'", mju_type2Str(kind.type), element),
+                   {},
+                   suggest_name(element, object_names(&m, kind.type))};
     }
     const Range range = kind.range != nullptr ? kind.range(m, id) : Range{id, 1};
     return range.count > 0 ? range : Range{};

@@ -51,7 +51,7 @@ Status choose_keyframe(const std::string& keyframe, CompiledWorld* world) {
     return {};
   }
   std::vector<std::string> names;
-  for (const std::string& name : object_names(m, mjOBJ_KEY, count))
+  for (const std::string& name : object_names(m, mjOBJ_KEY))
     if (!name.empty()) names.push_back(name);
   return Error{ErrorKind::kInput,
                fmt::format("the model has no keyframe '{}'", keyframe),

@@ -376,8 +376,29 @@ Status compile(const Scene& scene, ModelFiles* files, Level* level, double weigh
 
 }  // namespace
 
-std::vector<std::string> object_names(const mjModel* model, mjtObj type, int count) {
+int object_count(const mjModel& model, mjtObj type) {
+  using Count = std::pair<mjtObj, mjtSize mjModel::*>;
+  static constexpr Count kCounts[] = {
+      {mjOBJ_BODY, &mjModel::nbody},         {mjOBJ_JOINT, &mjModel::njnt},
+      {mjOBJ_GEOM, &mjModel::ngeom},         {mjOBJ_SITE, &mjModel::nsite},
+      {mjOBJ_CAMERA, &mjModel::ncam},        {mjOBJ_LIGHT, &mjModel::nlight},
+      {mjOBJ_FLEX, &mjModel::nflex},         {mjOBJ_MESH, &mjModel::nmesh},
+      {mjOBJ_SKIN, &mjModel::nskin},         {mjOBJ_HFIELD, &mjModel::nhfield},
+      {mjOBJ_TEXTURE, &mjModel::ntex},       {mjOBJ_MATERIAL, &mjModel::nmat},
+      {mjOBJ_PAIR, &mjModel::npair},         {mjOBJ_EXCLUDE, &mjModel::nexclude},
+      {mjOBJ_EQUALITY, &mjModel::neq},       {mjOBJ_TENDON, &mjModel::ntendon},
+      {mjOBJ_ACTUATOR, &mjModel::nactuator}, {mjOBJ_SENSOR, &mjModel::nsensor},
+      {mjOBJ_NUMERIC, &mjModel::nnumeric},   {mjOBJ_TEXT, &mjModel::ntext},
+      {mjOBJ_TUPLE, &mjModel::ntuple},       {mjOBJ_KEY, &mjModel::nkey},
+      {mjOBJ_PLUGIN, &mjModel::nplugin}};
+  for (const auto& [listed, count] : kCounts)
+    if (listed == type) return static_cast<int>(model.*count);
+  return -1;
+}
+
+std::vector<std::string> object_names(const mjModel* model, mjtObj type) {
   std::vector<std::string> names;
+  const int count = object_count(*model, type);
   for (int i = 0; i < count; ++i) {
     const char* name = mj_id2name(model, type, i);
     names.emplace_back(name != nullptr ? name : "");

@@ -45,7 +45,9 @@ Result<Level> build_level(const Scene& scene, const std::optional<Place>& place,
                           const MeshObjects& objects, ModelFiles* files,
                           CompileProgress* progress = nullptr);
 
-/// Names that MuJoCo gives its objects of one kind, "" where unnamed.
-std::vector<std::string> object_names(const mjModel* model, mjtObj type, int count);
+/// Number of a model's objects of one type; -1 = a type that has no list of its own.
+int object_count(const mjModel& model, mjtObj type);
+/// Names that MuJoCo gives its objects of one type, "" where unnamed.
+std::vector<std::string> object_names(const mjModel* model, mjtObj type);
 
 }  // namespace gloam

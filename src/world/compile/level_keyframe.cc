@@ -125,7 +125,7 @@ Status fill_initial_keyframe(Level* level) {
     const int key = mj_name2id(m, mjOBJ_KEY, (prefix + robot.options.keyframe).c_str());
     if (key < 0) {
       std::vector<std::string> names;
-      for (const std::string& full : object_names(m, mjOBJ_KEY, static_cast<int>(m->nkey))) {
+      for (const std::string& full : object_names(m, mjOBJ_KEY)) {
         if (full.starts_with(prefix)) names.push_back(full.substr(prefix.size()));
       }
       return Error{ErrorKind::kInput,

@@ -132,11 +132,9 @@ Result<GasSourceDescription> describe_source(const Options& options, const char*
   source.name = options.name;
   source.body = options.body.empty() ? 0 : mj_name2id(m, mjOBJ_BODY, options.body.c_str());
   if (source.body < 0) {
-    return Error{
-        ErrorKind::kInput,
-        fmt::format("{} '{}': there is no body '{}'", kind, options.name, options.body),
-        options.loc,
-        suggest_name(options.body, object_names(m, mjOBJ_BODY, static_cast<int>(m->nbody)))};
+    return Error{ErrorKind::kInput,
+                 fmt::format("{} '{}': there is no body '{}'", kind, options.name, options.body),
+                 options.loc, suggest_name(options.body, object_names(m, mjOBJ_BODY))};
   }
   source.X_BS.p = to_vec3f(options.position);
   source.half_size = to_vec3f(options.size) * 0.5f;

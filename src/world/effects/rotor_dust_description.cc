@@ -29,12 +29,12 @@ Error rotor_error(const RotorOptions& rotor, const std::string& message, std::st
 }
 
 /// Id of the element called `name`.
-Result<int> find_object(const RotorOptions& rotor, const mjModel& m, mjtObj type, mjtSize count,
-                        const char* kind, const std::string& name) {
+Result<int> find_object(const RotorOptions& rotor, const mjModel& m, mjtObj type, const char* kind,
+                        const std::string& name) {
   const int id = mj_name2id(&m, type, name.c_str());
   if (id >= 0) return id;
   return rotor_error(rotor, fmt::format("there is no {} '{}'", kind, name),
-                     suggest_name(name, object_names(&m, type, static_cast<int>(count))));
+                     suggest_name(name, object_names(&m, type)));
 }
 
 bool is_below(const mjModel& m, int body, int ancestor) {
@@ -85,7 +85,7 @@ Result<std::vector<RotorDescription>> describe_rotors(const CompiledWorld& world
     Vec3f push{0, 0, 1};
     if (!options.actuator.empty()) {
       GLOAM_TRY(rotor.actuator,
-                find_object(options, m, mjOBJ_ACTUATOR, m.nu, "actuator", options.actuator));
+                find_object(options, m, mjOBJ_ACTUATOR, "actuator", options.actuator));
       push = float3(m.actuator_gear + 6 * rotor.actuator);
       if (m.actuator_trntype[rotor.actuator] != mjTRN_SITE || !(length(push) > 0)) {
         return rotor_error(
@@ -97,7 +97,7 @@ Result<std::vector<RotorDescription>> describe_rotors(const CompiledWorld& world
       site = m.actuator_trnid[2 * rotor.actuator];
       rotor.thrust = length(push);
     } else {
-      GLOAM_TRY(site, find_object(options, m, mjOBJ_SITE, m.nsite, "site", options.site));
+      GLOAM_TRY(site, find_object(options, m, mjOBJ_SITE, "site", options.site));
       rotor.thrust = static_cast<float>(*options.thrust);
     }
     const Affine3f X_BS = rigid_pose(m.site_pos + 3 * site, m.site_quat + 4 * site);

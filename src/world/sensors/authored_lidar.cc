@@ -12,9 +12,8 @@ namespace gloam {
 namespace {
 
 std::vector<std::string> mount_names(const mjModel* m) {
-  std::vector<std::string> names = object_names(m, mjOBJ_BODY, static_cast<int>(m->nbody));
-  for (std::string& site : object_names(m, mjOBJ_SITE, static_cast<int>(m->nsite)))
-    names.push_back(std::move(site));
+  std::vector<std::string> names = object_names(m, mjOBJ_BODY);
+  for (std::string& site : object_names(m, mjOBJ_SITE)) names.push_back(std::move(site));
   return names;
 }
 

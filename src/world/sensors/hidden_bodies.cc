@@ -23,7 +23,7 @@ Result<std::vector<uint8_t>> hidden_bodies(const mjModel& model,
     if (!found)
       return Error{ErrorKind::kInput,
                    fmt::format("{} hides '{}', but there is no such body", owner, pattern), loc,
-                   suggest_name(pattern, object_names(&model, mjOBJ_BODY, count))};
+                   suggest_name(pattern, object_names(&model, mjOBJ_BODY))};
   }
   for (int b = 1; b < count; ++b)  // parents come first
     bodies[static_cast<size_t>(b)] |= bodies[static_cast<size_t>(model.body_parentid[b])];

@@ -36,8 +36,7 @@ Result<std::vector<int>> bodies_of(const CompiledWorld& world, const ProbeOption
         probe, fmt::format("there is no agent '{}'", probe.agent),
         names.empty() ? "the scene has no agents" : suggest_name(probe.agent, names));
   }
-  const auto names =
-      object_names(world.model.get(), mjOBJ_BODY, static_cast<int>(world.model->nbody));
+  const auto names = object_names(world.model.get(), mjOBJ_BODY);
   std::vector<int> bodies;
   for (size_t body = 1; body < names.size(); ++body)
     if (names[body] == probe.body || fits_pattern(probe.body, names[body]))

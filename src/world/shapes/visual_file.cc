@@ -114,8 +114,7 @@ class VisualImporter {
   Error no_body(const VisualOptions& visual) const {
     const mjModel* m = world_.model.get();
     return {ErrorKind::kInput, fmt::format("{}: there is no body '{}'", title(visual), visual.body),
-            visual.loc,
-            suggest_name(visual.body, object_names(m, mjOBJ_BODY, static_cast<int>(m->nbody)))};
+            visual.loc, suggest_name(visual.body, object_names(m, mjOBJ_BODY))};
   }
 
   Status add_visual(int index) {

@@ -66,6 +66,16 @@ class WorldTest : public ::testing::Test {
   TempFolder folder_;
 };
 
+TEST_F(WorldTest, NamesElementsOfATypeInOrder) {
+  const World world = *compile(folder_.path() / "arm.xml");
+  EXPECT_THAT(*world.names("body"), ElementsAre("world", "base", "link"));
+  EXPECT_THAT(*world.names("joint"), ElementsAre("", "hinge"));
+  EXPECT_THAT(*world.names("key"), ElementsAre("home"));
+  EXPECT_THAT(*world.names("tendon"), IsEmpty());
+  for (const char* type : {"nonsense", "", "xbody", "default"})
+    EXPECT_FALSE(world.names(type).ok()) << type;
+}
+
 TEST_F(WorldTest, ABareModelIsBitEqualToStock) {
   const Result<World> world = compile(folder_.path() / "arm.xml");
   ASSERT_TRUE(world.ok()) << world.error().to_string();
