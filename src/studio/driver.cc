@@ -403,8 +403,7 @@ void Driver::do_message(int64_t client, const DragEndMessage&) {
 void Driver::follow_grab() {
   const auto frame = publisher_.newest();
   if (!frame) return;
-  const bool paused = simulation_.paused();
-  const std::vector<Command> commands = grab_->follow(*frame, edits_.shown(), paused);
+  const std::vector<Command> commands = grab_->follow(*frame, simulation_.paused());
   if (!commands.empty()) edit(grab_->client(), commands);
   const auto X_WB = simulation_.body_pose(grab_->body());
   if (X_WB.ok())

@@ -26,21 +26,20 @@ bool is_near(const Pose& a, const Pose& b) {
   return norm(a.p - b.p) < 1e-9 && turned < 1e-9;
 }
 
-/// Index of the joint of `body` if it is a free one, else -1.
-int free_joint_of(const Instant& instant, int body) {
+}  // namespace
+
+std::optional<Grab::Placing> Grab::placing_of(const Snapshot& now, int body) {
+  Instant instant;
+  if (!now || !instant.solve(now).ok()) return {};
+  Placing placing;
+  const auto mocap = instant.value("body_mocapid");
+  placing.is_mocap = mocap.ok() && mocap->at(static_cast<size_t>(body)) >= 0;
   const auto types = instant.value("jnt_type"), bodies = instant.value("jnt_bodyid");
   for (size_t i = 0; types.ok() && bodies.ok() && i < types->size(); ++i)
-    if ((*bodies)[i] == body && (*types)[i] == 0) return static_cast<int>(i);  // mjJNT_FREE
-  return -1;
+    if ((*bodies)[i] == body && (*types)[i] == 0)  // mjJNT_FREE
+      placing.free_joint = static_cast<int>(i);
+  return placing;
 }
-
-bool is_mocap(const Instant& instant, int body) {
-  const auto ids = instant.value("body_mocapid");
-  return ids.ok() && static_cast<size_t>(body) < ids->size() &&
-         (*ids)[static_cast<size_t>(body)] >= 0;
-}
-
-}  // namespace
 
 Result<Grab> Grab::take(int64_t client, Simulation& simulation, const CameraFrame& frame,
                         const DragStartMessage& message) {
@@ -49,6 +48,7 @@ Result<Grab> Grab::take(int64_t client, Simulation& simulation, const CameraFram
   if (hit->body.id <= 0) return refuse("This is part of the world and cannot move.");
   Grab grab(client, std::move(*hit), message.turn);
   GLOAM_TRY(grab.X_WB_, simulation.body_pose(grab.body()));
+  grab.placing_ = placing_of(simulation.latest(), grab.body().id);
   grab.depth_ = depth_of(frame.X_WC, frame.intrinsics, grab.hit_.point_W);
   grab.move_to(frame, message.u, message.v);
   grab.u0_ = grab.u_, grab.v0_ = grab.v_;
@@ -74,23 +74,21 @@ std::optional<Pose> Grab::goal(const CameraFrame& frame) const {
   return Pose{X_WB_.p + (*target - hit_.point_W), X_WB_.q};
 }
 
-std::vector<Command> Grab::place(const Pose& X_WB, const Instant& instant) const {
-  if (is_mocap(instant, body().id)) return {{.what = SetMocapPose{body(), X_WB}}};
-  const int joint = free_joint_of(instant, body().id);
-  if (joint < 0) return {};
+std::vector<Command> Grab::place(const Pose& X_WB) const {
+  if (placing_->is_mocap) return {{.what = SetMocapPose{body(), X_WB}}};
+  if (placing_->free_joint < 0) return {};
   const Vec3& p = X_WB.p;
   const Quat& q = X_WB.q;
-  return {{.what = SetJointState{{joint, 0}, {p.x, p.y, p.z, q.w, q.x, q.y, q.z}, {}}}};
+  return {
+      {.what = SetJointState{{placing_->free_joint, 0}, {p.x, p.y, p.z, q.w, q.x, q.y, q.z}, {}}}};
 }
 
-std::vector<Command> Grab::follow(const CameraFrame& frame, const Snapshot& shown, bool paused) {
+std::vector<Command> Grab::follow(const CameraFrame& frame, bool paused) {
   const std::optional<Pose> X_WB = goal(frame);
   if (!X_WB || (last_ && is_near(*last_, *X_WB) && paused == was_paused_)) return {};
   last_ = X_WB;
   was_paused_ = paused;
-  if (Instant instant; shown && instant.solve(shown).ok()) {
-    if (paused || is_mocap(instant, body().id)) return place(*X_WB, instant);
-  }
+  if (placing_ && (paused || placing_->is_mocap)) return place(*X_WB);
   if (turn_) return {{.what = TurnBody{body(), X_WB->q, true}}};
   const Vec3 target_W = hit_.point_W + (X_WB->p - X_WB_.p);
   return {{.what = DragBody{body(), hit_.point_B, target_W, true}}};

@@ -14,13 +14,14 @@ constexpr std::chrono::milliseconds kPause{100};  // at least, between two, wher
 }  // namespace
 
 void History::keep() {
-  const World world = simulation_.world();
-  if (world.compiled() == nullptr) return;
-  const double time = simulation_.stats().time;
+  const Snapshot present = simulation_.latest();
+  if (!present) return;
+  const double time = present.time();
+  const uint64_t world = present.world().serial();
   // A reset, a return by somebody else, or another World: nothing saved leads to the present.
-  if (time < last_time_ || world.serial() != world_) saved_.clear();
+  if (time < last_time_ || world != world_) saved_.clear();
   last_time_ = time;
-  world_ = world.serial();
+  world_ = world;
   const auto now = Clock::now();
   if (!saved_.empty() && (time < saved_.back().time() + kInterval || now < saved_at_ + kPause))
     return;
@@ -47,7 +48,7 @@ Status History::return_to(int64_t step) {
   if (!since.empty()) GLOAM_TRY_STATUS(simulation_.post(since));
   saved_.erase(after, saved_.end());
   const Status status = simulation_.run_until(step);
-  last_time_ = simulation_.stats().time;
+  last_time_ = simulation_.latest().time();
   return status;
 }
 

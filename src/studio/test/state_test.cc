@@ -150,14 +150,14 @@ TEST(Grab, MovesAFreeBodyWhileItIsPausedAndPullsItWhileItRuns) {
   ASSERT_TRUE(grab.ok()) << grab.error().to_string();
   EXPECT_EQ(grab->hit().name, "box");
   grab->move_to(frame, 120, 50);
-  const auto placed = grab->follow(frame, simulation->latest(), true);
+  const auto placed = grab->follow(frame, true);
   ASSERT_EQ(placed.size(), 1u);
   const auto& joint = std::get<SetJointState>(placed[0].what);
   EXPECT_EQ(joint.joint.id, 1);
   EXPECT_NEAR(joint.qpos[0], 20 * (5 - 1.3) / 100, 1e-6) << "as far as the mouse at its depth";
   EXPECT_NEAR(joint.qpos[2], 1, 1e-6);
-  EXPECT_TRUE(grab->follow(frame, simulation->latest(), true).empty()) << "nothing new";
-  const auto pulled = grab->follow(frame, simulation->latest(), false);
+  EXPECT_TRUE(grab->follow(frame, true).empty()) << "nothing new";
+  const auto pulled = grab->follow(frame, false);
   ASSERT_EQ(pulled.size(), 1u);
   EXPECT_NEAR(std::get<DragBody>(pulled[0].what).target_W.x, 20 * (5 - 1.3) / 100, 1e-6);
   EXPECT_FALSE(std::get<DragBody>(grab->let_go()[0].what).active);
@@ -169,7 +169,7 @@ TEST(Grab, TurnsAboutAxesOfTheImage) {
   auto grab = Grab::take(1, *simulation, frame, {{100, 50}, true});
   ASSERT_TRUE(grab.ok());
   grab->move_to(frame, 150, 50);  // half a height to the right: a quarter turn about "up"
-  const auto turned = grab->follow(frame, simulation->latest(), false);
+  const auto turned = grab->follow(frame, false);
   ASSERT_EQ(turned.size(), 1u);
   const Quat q = std::get<TurnBody>(turned[0].what).target_WB;
   EXPECT_NEAR(q.w, std::sqrt(0.5), 1e-9);
@@ -183,8 +183,7 @@ TEST(Grab, AMocapBodyGoesWithTheMouseAndTheWorldDoesNot) {
   ASSERT_TRUE(hand.ok()) << hand.error().to_string();
   EXPECT_EQ(hand->hit().name, "hand");
   hand->move_to(frame, 140, 50);
-  EXPECT_TRUE(std::holds_alternative<SetMocapPose>(
-      hand->follow(frame, simulation->latest(), false).at(0).what));
+  EXPECT_TRUE(std::holds_alternative<SetMocapPose>(hand->follow(frame, false).at(0).what));
   EXPECT_FALSE(Grab::take(1, *simulation, frame, {{5, 5}}).ok()) << "the floor";
 }
 
