@@ -74,6 +74,17 @@ void begin(const LiveRun& run, const LiveCommand& command) {
 
 }  // namespace
 
+void show_interactively(Scene* scene) {
+  scene->render.tier = RenderTier::kInteractive;
+  scene->render.error.reset();
+}
+
+ViewOptions view_of(const Scene& scene) {
+  ViewOptions view{.render = scene.render};
+  if (!scene.cameras.empty()) view.camera = scene.cameras.front().name;
+  return view;
+}
+
 void LiveCommand::add_to(CLI::App& app) {
   app.add_flag("--view", view, "Serve the studio on this machine instead of recording");
   app.add_flag("--paused", paused, "Live runs: start paused, until a client starts the simulation");

@@ -37,6 +37,11 @@ struct LiveCommand {
   BridgeOptions options(const BridgeOptions& scene) const;
 };
 
+/// Live images are in real time: of the interactive tier.
+void show_interactively(Scene* scene);
+/// View of a scene from its first camera: the free one may stand outside the walls.
+ViewOptions view_of(const Scene& scene);
+
 /// Parts of a live run.
 struct LiveRun {
   Simulation& simulation;

@@ -36,15 +36,10 @@ int keep_live(const World& world, const RunRequest& request, const RunCommand& c
     if (const Status status = (*simulation)->restore(*request.from); !status.ok())
       return fail(status.error());
   }
-  LiveRun run{**simulation};
+  LiveRun run{.simulation = **simulation, .view = view_of(scene)};
   run.view.width = request.width;
   run.view.height = request.height;
-  run.view.render = scene.render;
-  if (!request.cameras.empty()) {
-    run.view.camera = request.cameras.front();
-  } else if (!scene.cameras.empty()) {
-    run.view.camera = scene.cameras.front().name;  // the free camera may stand outside the walls
-  }
+  if (!request.cameras.empty()) run.view.camera = request.cameras.front();
   run.bridges = command.live.options(scene.bridge);
   run.pace = request.simulation.pace;
   run.log = request.log;
@@ -126,11 +121,7 @@ int run(const RunCommand& command_line, const Globals& globals) {
   if (const Status status = check_outputs(command.options.outputs); !status.ok())
     return fail(status.error());
   scene->record.mcap |= command.mcap;
-  // Live images are in real time unless the command line asks for another tier.
-  if (command.is_live(scene->bridge) && !command.options.tier) {
-    scene->render.tier = RenderTier::kInteractive;
-    scene->render.error.reset();
-  }
+  if (command.is_live(scene->bridge) && !command.options.tier) show_interactively(&*scene);
   auto world = compile(*scene, globals, command.options.keyframe);
   if (!world.ok()) return fail(world.error());
   tell_void_outputs(command.options.outputs, *scene, *world);

@@ -58,8 +58,7 @@ int open(StudioCommand command, const Globals& globals) {
   if (is_log(command.file)) return play_log(command);
   auto scene = command.scene.load(command.file);
   if (!scene.ok()) return fail(scene.error());
-  scene->render.tier = RenderTier::kInteractive;
-  scene->render.error.reset();
+  show_interactively(&*scene);
   command.render.apply_to(&scene->render);
   auto world = compile(*scene, globals, command.scene.keyframe);
   if (!world.ok()) return fail(world.error());
@@ -69,10 +68,7 @@ int open(StudioCommand command, const Globals& globals) {
   options.pace = command.live.pace_of(*scene, Pace::kRealTime);
   auto simulation = Simulation::create(*world, options);
   if (!simulation.ok()) return fail(simulation.error());
-  LiveRun run{**simulation};
-  run.view.render = scene->render;
-  // The free camera may stand outside the walls.
-  if (!scene->cameras.empty()) run.view.camera = scene->cameras.front().name;
+  LiveRun run{.simulation = **simulation, .view = view_of(*scene)};
   run.bridges = command.live.options(scene->bridge);
   run.pace = options.pace;
   return serve(command, std::move(run), starting);

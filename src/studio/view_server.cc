@@ -65,7 +65,7 @@ web::Frame text_frame(std::string text) { return {std::move(text), nullptr, true
 
 /// Puts the parts together and knows who is in control.
 ///
-///     renderer → Publisher (JPEG, state) → clients' outboxes → WebSocketServer
+///     renderer → Publisher → PictureSender (JPEG, H.264) → clients' outboxes → WebSocketServer
 ///     clients → WebSocketServer → here (access) → Driver → Simulation
 ///                                               → Inspector → fields of the model
 class ViewServer::Impl : public web::ServerEvents {
