@@ -2,7 +2,7 @@ import { command, command_with, handle, send } from "./link";
 import { overlay_actions } from "./overlays";
 import { draw_here, left_open, open_sections, right_open, show_info, theme, type Theme } from "./settings";
 import { camera, copied_state, hello, help_open, is_log, live, paused, saved_states, selection, show_notice, speed, state } from "./state";
-import { recording, save_screenshot, toggle_recording } from "./view/capture";
+import { save_screenshot, toggle_recording } from "./view/capture";
 
 // Every action of the user, once. Buttons, menus, keys and the list under F1 come from kActions.
 
@@ -192,5 +192,3 @@ export function key_text(key: string): string {
   return key.split("+").map((part, i, all) => part === "" ? (i === all.length - 1 ? "+" : "") : names[part] ?? (part.length === 1 ? part.toUpperCase() : part))
     .filter(Boolean).join(" + ");
 }
-
-export { recording };

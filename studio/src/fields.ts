@@ -1,4 +1,4 @@
-import { computed, effect, signal, type ReadonlySignal, type Signal } from "@preact/signals";
+import { effect, signal, type ReadonlySignal, type Signal } from "@preact/signals";
 import { useEffect, useMemo } from "preact/hooks";
 import { connection, handle_fields, send } from "./link";
 import type { FieldReply } from "./protocol";
@@ -54,8 +54,6 @@ effect(() => {
 
 const values = new Map<string, Signal<Float32Array>>();
 const users = new Map<string, number>();
-/** Time and step of the newest watched values. */
-export const watch_time = signal(0);
 /** Counts replies with constants of the model. */
 export const constants_count = signal(0);
 /** Counts replies to the watch. */
@@ -114,7 +112,6 @@ effect(() => {
 handle_fields((reply: FieldReply) => {
   if (reply.id === 0) {
     for (const [name, numbers] of reply.values) value_signal(name).value = numbers;
-    watch_time.value = reply.time;
     watch_count.value++;
     return;
   }
@@ -137,9 +134,4 @@ export function use_watch(...names: string[]): ReadonlySignal<Float32Array>[] {
 
 export function use_model(...names: string[]): ReadonlySignal<Float32Array>[] {
   return useMemo(() => names.map(model_field), [names.join(" ")]);
-}
-
-/** One number of a field, rounded so that invisible changes do not render. */
-export function element(field: ReadonlySignal<Float32Array>, index: number, digits = 4) {
-  return computed(() => index < field.value.length ? field.value[index].toFixed(digits) : "–");
 }

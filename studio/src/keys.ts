@@ -1,4 +1,4 @@
-import { action, kActions, type Action } from "./actions";
+import { kActions, type Action } from "./actions";
 import { driving, drive_key } from "./drive";
 import { help_open } from "./state";
 
@@ -41,5 +41,3 @@ export function listen_to_keys() {
   document.addEventListener("keydown", on_key_down);
   document.addEventListener("keyup", (event) => drive_key(event.code, false));
 }
-
-export { action };

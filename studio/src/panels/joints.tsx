@@ -1,9 +1,9 @@
-import { computed, useSignal, type ReadonlySignal } from "@preact/signals";
+import { computed, type ReadonlySignal } from "@preact/signals";
 import { useMemo } from "preact/hooks";
 import { use_model, use_watch } from "../fields";
 import { command } from "../link";
-import { blocked, model, name_of, only_selected, selection } from "../state";
-import { Check } from "../widgets/check";
+import { blocked, model, name_of } from "../state";
+import { use_filter } from "../widgets/filter";
 import { NumberField } from "../widgets/number_field";
 import { Empty } from "../widgets/section";
 import { Slider } from "../widgets/slider";
@@ -16,34 +16,23 @@ const kMost = 60;  // rows; more are found by the filter
 interface Row { joint: number; name: string; type: number; address: number; low: number; high: number; body: number }
 
 export function Joints() {
-  const filter = useSignal("");
   const [types, addresses, limited, ranges, bodies] = use_model("jnt_type", "jnt_qposadr", "jnt_limited", "jnt_range", "jnt_bodyid");
   const [qpos] = use_watch("qpos");
   const names = model.value?.joints ?? [];
-  if (!names.length) return <Empty text="This model has no joints." />;
   const rows: Row[] = [...types.value].map((type, joint) => ({
     joint, type, name: name_of(names, joint, "joint"), address: addresses.value[joint], body: bodies.value[joint],
     low: limited.value[joint] ? ranges.value[2 * joint] : type === kSlide ? -1 : -Math.PI,
     high: limited.value[joint] ? ranges.value[2 * joint + 1] : type === kSlide ? 1 : Math.PI,
   }));
-  const wanted = rows.filter(({ name, body }) => name.toLowerCase().includes(filter.value.toLowerCase())
-    && (!only_selected.value || !selection.value || body === selection.value.id));
+  const { field, shown, more } = use_filter(rows, kMost);
+  if (!names.length) return <Empty text="This model has no joints." />;
   return (
     <>
-      <Filter filter={filter} />
-      {wanted.slice(0, kMost).map((row) => row.type in kParts ? <Numbers key={row.joint} row={row} qpos={qpos} /> : <OneNumber key={row.joint} row={row} qpos={qpos} />)}
-      {wanted.length > kMost && <p class="hint">{wanted.length - kMost} more: type a part of the name.</p>}
-      {!wanted.length && <Empty text="No joint has this name." />}
+      {field}
+      {shown.map((row) => row.type in kParts ? <Numbers key={row.joint} row={row} qpos={qpos} /> : <OneNumber key={row.joint} row={row} qpos={qpos} />)}
+      {more}
+      {!shown.length && <Empty text="No joint has this name." />}
     </>
-  );
-}
-
-export function Filter({ filter }: { filter: { value: string } }) {
-  return (
-    <div class="row">
-      <input type="search" placeholder="Filter by name" aria-label="Filter by name" value={filter.value} onInput={(event) => { filter.value = event.currentTarget.value; }} />
-      {selection.value && <Check label={`of ${selection.value.name}`} tip="Only elements of the selected body" on={only_selected.value} set={(on) => { only_selected.value = on; }} />}
-    </div>
   );
 }
 

@@ -1,25 +1,23 @@
-import { useSignal } from "@preact/signals";
 import { use_model, use_watch } from "../fields";
 import { plotted_sensors, toggle_in } from "../settings";
 import { model, name_of } from "../state";
+import { use_filter } from "../widgets/filter";
 import { Empty } from "../widgets/section";
-import { Filter } from "./joints";
 
 const kMost = 80;
 
 export function Sensors() {
-  const filter = useSignal("");
   const [addresses, sizes] = use_model("sensor_adr", "sensor_dim");
   const [data] = use_watch("sensordata");
   const names = model.value?.sensors ?? [];
+  const { field, shown, more } = use_filter(names.map((_, i) => ({ i, name: name_of(names, i, "sensor") })), kMost);
   if (!names.length) return <Empty text="This model has no sensors." />;
-  const wanted = names.map((_, i) => ({ i, name: name_of(names, i, "sensor") })).filter(({ name }) => name.toLowerCase().includes(filter.value.toLowerCase()));
   return (
     <>
-      <Filter filter={filter} />
+      {field}
       <table class="values">
         <thead><tr><th>Sensor</th><th>Value</th><th title="Draw it in Plots">Plot</th></tr></thead>
-        <tbody>{wanted.slice(0, kMost).map(({ i, name }) => {
+        <tbody>{shown.map(({ i, name }) => {
           const first = addresses.value[i], values = data.value.subarray(first, first + sizes.value[i]);
           return (
             <tr key={i}>
@@ -31,7 +29,7 @@ export function Sensors() {
           );
         })}</tbody>
       </table>
-      {wanted.length > kMost && <p class="hint">{wanted.length - kMost} more: type a part of the name.</p>}
+      {more}
     </>
   );
 }
