@@ -133,7 +133,7 @@ void Driver::run() {
   std::unique_lock lock(mutex_);
   while (!stopping_) {
     wake_.wait_for(lock, kTickPeriod, [this] { return stopping_ || !requests_.empty(); });
-    const bool has_requests = !requests_.empty();
+    has_news_ |= !requests_.empty();
     while (!stopping_ && !requests_.empty()) {
       const ControlRequest request = std::move(requests_.front());
       requests_.pop_front();
@@ -143,9 +143,10 @@ void Driver::run() {
     }
     if (stopping_) break;
     lock.unlock();
-    if (has_requests && Clock::now() - reported_at_ > kReportPause) {
+    if (has_news_ && Clock::now() - reported_at_ > kReportPause) {
       outputs_.changed();
       reported_at_ = Clock::now();
+      has_news_ = false;
     }
     tick();
     lock.lock();

@@ -120,6 +120,7 @@ class Driver {
   History history_;
   std::optional<Grab> grab_;
   double speed_ = 1;
+  bool has_news_ = false;  // requests were carried out since reported_at_
   Clock::time_point reported_at_;
 
   std::thread thread_;
