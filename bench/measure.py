@@ -197,7 +197,7 @@ def direct_places(quick):
 
 
 def view(quick):
-    """the live page at 640x480: pictures a second of the demo while it runs, and the first one in a generated house"""
+    """the studio at 640x480: pictures a second of the demo while it runs, the first one in a generated house, and requests there"""
     demo = view_rate.watch(BIN / "gloam", ROOT / "examples" / "demo.toml", "free", 3 if quick else 8)
     yield at_least("page, demo: pictures a second while it runs", demo["rate"], 10,
                    f"{demo['width']} px wide; paused, {demo['still']} pictures of {demo['still_width']} px were added up")
@@ -206,6 +206,7 @@ def view(quick):
     scene.write_text("[environment.house]\nseed = 4\n")
     house = view_rate.watch(BIN / "gloam", scene, "free", 3 if quick else 8)
     yield at_most("page, house: seconds to the first picture", house["first"], 3, f"then {house['rate']:.1f} a second, {house['width']} px wide")
+    yield at_most("page, house: seconds to the state that shows a request, 95 %", house["request"], 0.1, "while the simulation runs")
 
 
 def truth(quick):

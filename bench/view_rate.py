@@ -1,4 +1,10 @@
-"""How fast the live page's pictures come: a client of docs/view_protocol.md that answers each picture with `seen`."""
+"""How fast the studio is: a client of docs/view_protocol.md that answers each image with `seen`.
+
+    python3 bench/view_rate.py [SCENE] [CAMERA]     default: examples/house.toml, its first camera
+
+prints the seconds to the first image, the images per second at 640x480, and how soon the state shows the effect of a
+request. Run it on an idle machine.
+"""
 import json
 import os
 import re
@@ -6,8 +12,13 @@ import signal
 import socket
 import struct
 import subprocess
+import sys
 import time
 from base64 import b64encode
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent
+REQUESTS = 100
 
 
 class Client:
@@ -44,6 +55,15 @@ class Client:
             if first & 15 == 2:
                 return payload
 
+    def state_where(self, holds):
+        """The next state that satisfies a condition; pictures are acknowledged meanwhile."""
+        while True:
+            message = self.message()
+            if isinstance(message, bytes):
+                self.send(type="seen")
+            elif message["type"] == "state" and holds(message):
+                return message
+
     def pictures(self, seconds):
         """Arrival times and widths of the pictures of so many seconds."""
         out, end = [], time.monotonic() + seconds
@@ -55,10 +75,24 @@ class Client:
         return out
 
 
+def request_times(client):
+    """Sorted seconds from requests to the states that show their effects."""
+    times = []
+    for i in range(REQUESTS):
+        wanted = 0.5 if i % 2 else 1
+        start = time.monotonic()
+        client.send(type="speed", value=wanted)
+        client.state_where(lambda state: state["speed"] == wanted)
+        times.append(time.monotonic() - start)
+    return sorted(times)
+
+
 def watch(program, scene, camera, seconds):
     """{"first": seconds from a client's coming to its first picture, "rate": pictures per second of the running simulation, "width",
-    "still": pictures of the paused one in as many seconds, "still_width"}."""
-    command = [program, "run", scene, "--view", "--port", "0", "--camera", camera, "--resolution", "640x480", "--duration", "3600"]
+    "still": pictures of the paused one in as many seconds, "still_width", "request": seconds within which 95 % of requests show in the
+    state}. camera: "" = the scene's first."""
+    command = [program, "run", scene, "--view", "--port", "0", "--resolution", "640x480", "--duration", "3600"]
+    command += ["--camera", camera] if camera else []
     with subprocess.Popen([str(word) for word in command], stderr=subprocess.PIPE, text=True) as process:
         try:
             found = next(match for line in process.stderr if (match := re.search(r":(\d+)/\?token=(\w+)", line)))
@@ -72,6 +106,7 @@ def watch(program, scene, camera, seconds):
             client.send(type="resume")
             client.pictures(4)  # until the resolution has settled
             moving = client.pictures(seconds)
+            request = request_times(client)[REQUESTS * 95 // 100]
             client.send(type="pause")
             client.pictures(1)
             still = client.pictures(seconds)
@@ -79,4 +114,16 @@ def watch(program, scene, camera, seconds):
             process.send_signal(signal.SIGINT)
             process.stderr.close()
             process.wait(30)
-    return {"first": first, "rate": len(moving) / seconds, "width": moving[-1][1] if moving else 0, "still": len(still), "still_width": still[-1][1] if still else 0}
+    return {"first": first, "rate": len(moving) / seconds, "width": moving[-1][1] if moving else 0, "still": len(still), "still_width": still[-1][1] if still else 0,
+            "request": request}
+
+
+def main(scene, camera):
+    found = watch(ROOT / "build" / "release" / "bin" / "gloam", scene, camera, 20)
+    print(f"{Path(scene).name}: first image after {found['first']:.2f} s (3)")
+    print(f"{Path(scene).name}: {found['rate']:.1f} images/s at 640x480 (10), {found['width']} px wide; paused: {found['still_width']} px")
+    print(f"{Path(scene).name}: 95 % of requests show in the state within {1000 * found['request']:.0f} ms (100)")
+
+
+if __name__ == "__main__":
+    main(sys.argv[1] if len(sys.argv) > 1 else ROOT / "examples" / "house.toml", sys.argv[2] if len(sys.argv) > 2 else "")
