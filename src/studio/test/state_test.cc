@@ -208,6 +208,12 @@ TEST(Fields, AreWrittenAsTheProtocolSays) {
   float height = 0;
   std::memcpy(&height, bytes + 8 + length + 4 * 3, 4);
   EXPECT_EQ(height, 1) << "z of the free box";
+  for (const int id : {1, 10, 100, 1000}) {  // texts of every length
+    const FieldsMessage other = encode_fields({"qpos"}, id, now, instant_of(now));
+    std::memcpy(&length, other.bytes.data() + 4, 4);
+    EXPECT_EQ(length % 4, 0u) << id;
+    EXPECT_EQ(other.bytes.size(), 8 + length + 4 * 8);
+  }
 }
 
 }  // namespace
